@@ -1,0 +1,44 @@
+#pragma once
+
+#include "core/base/image.h"
+#include "core/raster/rasterize.h"
+#include "core/scene/requirements.h"
+#include "core/scene/scene.h"
+
+namespace lrsm {
+
+/// What the eye sees, one surface a pixel; structure of arrays, zero where nothing was drawn.
+struct GBuffer {
+    int width = 0, height = 0;
+    Image<Vec3> position;         ///< world, metres
+    Image<Vec3> geometricNormal;  ///< unit, towards the eye
+    Image<Vec3> normal;           ///< unit shading normal, towards the eye
+    Image<Vec3> albedo;           ///< diffuse, linear
+    Image<Vec3> specularColor;    ///< F0; empty image when the scene has no specular part
+    Image<float> roughness;       ///< empty likewise
+    Image<float> depthLinear;     ///< metres along the viewing axis; 0 where empty
+    Image<std::uint32_t> objectId;  ///< mesh index + 1; 0 where empty
+    RasterCounts raster;
+
+    bool covered(std::size_t pixel) const { return objectId.texels[pixel] != 0; }
+    std::size_t byteSize() const;
+    static std::size_t predictBytes(int width, int height, bool specular);
+};
+
+struct GBufferSettings {
+    int width = 1280, height = 720;
+    bool operator==(const GBufferSettings&) const = default;
+};
+
+/// World-to-clip of a camera for a picture of this size; z/w in [0, 1], near at 0.
+Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& sceneBounds);
+
+/// Ray through a pixel's centre: what the reference shoots, so that the two pictures can be subtracted.
+struct CameraRay {
+    Vec3 origin, direction;
+};
+CameraRay pixelRay(const Camera& camera, int width, int height, float pixelX, float pixelY);
+
+GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requirements& needs, const GBufferSettings& settings);
+
+}  // namespace lrsm

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "conetrace/gbuffer.h"
+#include "core/base/settings.h"
+#include "lrsm/layers.h"
+#include "voxel/opacity_pyramid.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lrsm {
+
+/// What one pass took and made.
+struct PassReport {
+    std::string name;          ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", "gbuffer", "direct", "cones", "composite"
+    double milliseconds = 0.0;
+    std::size_t bytes = 0;     ///< held by the pass's output
+    std::size_t gpuBytes = 0;  ///< the same in the GPU's formats
+    std::string sha256;        ///< of the output; empty unless asked for
+};
+
+struct ConeCounts {
+    std::uint64_t cones = 0;
+    std::uint64_t steps = 0;
+    std::uint64_t voxelTaps = 0;    ///< quadrilinear
+    std::uint64_t lrsmSamples = 0;  ///< one layer's trilinear footprint each
+    ConeCounts& operator+=(const ConeCounts& other)
+    {
+        cones += other.cones;
+        steps += other.steps;
+        voxelTaps += other.voxelTaps;
+        lrsmSamples += other.lrsmSamples;
+        return *this;
+    }
+};
+
+/// The picture, its parts, and what made it.
+struct Frame {
+    GBuffer gbuffer;
+    Image<Vec3> direct;            ///< radiance towards the eye, W/(m^2 sr)
+    Image<Vec3> irradiance;        ///< indirect, before the receiver's albedo, W/m^2
+    Image<Vec3> indirectDiffuse;   ///< albedo * irradiance / pi
+    Image<Vec3> indirectSpecular;
+    Image<Vec3> combined;          ///< direct + indirectDiffuse + indirectSpecular
+    Image<float> opacity;          ///< mean opacity of the diffuse cones, 0 open .. 1 closed
+    std::vector<PassReport> passes;
+    ConeCounts cones;
+    std::uint64_t voxelsSet = 0;
+    RasterCounts gbufferRaster;
+    struct LightReport {
+        RasterCounts raster;
+        ConversionCounts conversions;
+        std::vector<LayerRange> ranges;
+        std::vector<std::uint64_t> validTexelsPerLayer;
+        int layersAsked = 0;
+        std::uint64_t negativeVariances = 0;
+    };
+    std::vector<LightReport> lights;
+};
+
+/// Everything that the cones read.
+struct World {
+    OpacityPyramid opacity;
+    std::vector<Lrsm> lrsms;  ///< one a light
+    std::vector<Rsm> rsms;    ///< kept for the direct light's shadows
+};
+
+struct RenderOptions {
+    int width = 1280, height = 720;
+    bool hashPasses = true;  ///< SHA-256 of each pass's output; its time is not counted in the pass
+    std::function<void(const std::string& pass, double fraction)> progress;  ///< may be empty
+};
+
+/// All passes once, in the order of the paper's Figure 3.
+Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                  const RenderOptions& options);
+
+/// How one pixel came about, as text: cone by cone, step by step (alpha, level, layers, R, V, N, A, f, transmittance).
+std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                         const RenderOptions& options, int x, int y);
+
+}  // namespace lrsm

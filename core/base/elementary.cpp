@@ -1,0 +1,89 @@
+#include "core/base/elementary.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace lrsm {
+
+SinCos sinCos(double angleRadians)
+{
+    // Cody-Waite reduction: pi/2 split in three parts, the first two with trailing zeros so that k * part is exact.
+    constexpr double kHalfPi1 = 0x1.921fb544p+0, kHalfPi2 = 0x1.0b4611a6p-34, kHalfPi3 = 0x1.3198a2e037073p-69;
+    if (!(std::abs(angleRadians) <= 1e6)) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, nan};
+    }
+    const double k = std::floor(angleRadians * 0.63661977236758134308 + 0.5);
+    const double r = ((angleRadians - k * kHalfPi1) - k * kHalfPi2) - k * kHalfPi3;
+
+    // Taylor series about 0; on |r| <= pi/4 the first omitted terms are below 1e-18.
+    const double r2 = r * r;
+    double s = 1.0, c = 1.0;
+    for (int n = 8; n >= 1; --n) s = 1.0 - s * r2 / double((2 * n) * (2 * n + 1));
+    for (int n = 9; n >= 1; --n) c = 1.0 - c * r2 / double((2 * n - 1) * (2 * n));
+    s *= r;
+
+    switch (static_cast<std::int64_t>(k) & 3) {
+        case 0: return {s, c};
+        case 1: return {c, -s};
+        case 2: return {-s, -c};
+        default: return {-c, s};
+    }
+}
+
+double tangent(double angleRadians)
+{
+    const SinCos sc = sinCos(angleRadians);
+    return sc.sin / sc.cos;
+}
+
+double log2Exact(double x)
+{
+    if (!(x > 0.0)) return x == 0.0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    int exponent = 0;
+    double mantissa = std::frexp(x, &exponent);  // exact
+    if (mantissa < 0.70710678118654752440) {
+        mantissa *= 2.0;
+        --exponent;
+    }
+    // log2 m = (2 / ln 2) artanh((m - 1) / (m + 1)); |s| <= 0.1716, so s^25 / 25 < 1e-20.
+    const double s = (mantissa - 1.0) / (mantissa + 1.0), s2 = s * s;
+    double series = 0.0;
+    for (int n = 23; n >= 1; n -= 2) series = series * s2 + 1.0 / double(n);
+    return double(exponent) + 2.8853900817779268147 * s * series;
+}
+
+double exp2Exact(double x)
+{
+    if (std::isnan(x)) return x;
+    if (x > 1100.0) return std::numeric_limits<double>::infinity();
+    if (x < -1200.0) return 0.0;
+    const double whole = std::floor(x + 0.5);
+    const double t = (x - whole) * 0.69314718055994530942;  // |t| <= 0.3466
+    double series = 1.0;
+    for (int n = 15; n >= 1; --n) series = 1.0 + series * t / double(n);
+    return std::ldexp(series, static_cast<int>(whole));
+}
+
+double power(double x, double y)
+{
+    if (y == 0.0) return 1.0;
+    if (x == 0.0) return y > 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+    return exp2Exact(y * log2Exact(x));
+}
+
+float fastLog2(float x)
+{
+    // Exponent by integer arithmetic; the mantissa in [sqrt(1/2), sqrt 2) through the same artanh series, cut at s^7
+    // (first omitted term 2/ln2 s^9 / 9 < 5e-8).
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - 0x3f3504f3u;
+    const auto exponent = static_cast<std::int32_t>(bits) >> 23;
+    const float m = std::bit_cast<float>((bits & 0x007fffffu) + 0x3f3504f3u);
+    const float s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
+    const float series = ((0.41219858f * s2 + 0.57707802f) * s2 + 0.96179669f) * s2 + 2.8853901f;
+    return static_cast<float>(exponent) + s * series;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+/// The material at a point, shared by the real-time passes and the reference, so that a difference between them is transport.
+namespace lrsm {
+
+/// A point on a triangle: barycentrics b0 + b1 + b2 = 1 for vertices 0, 1, 2.
+struct SurfaceHit {
+    std::uint32_t mesh = 0;
+    std::uint32_t triangle = 0;  ///< in the mesh
+    float b1 = 0.0f, b2 = 0.0f;
+};
+
+struct Surface {
+    Vec3 position{0.0f};
+    Vec3 geometricNormal{0.0f};  ///< unit, of the triangle, on the side of `facing`
+    Vec3 normal{0.0f};           ///< unit shading normal (vertex normals, normal map), on the side of `facing`
+    Vec3 albedo{0.0f};           ///< diffuse albedo rho in [0, 1], linear
+    Vec3 specularColor{0.0f};    ///< F0; exactly 0 where the material has no specular part
+    float roughness = 1.0f;      ///< perceptual; GGX alpha = roughness^2
+};
+
+/// Interpolates the vertex streams and evaluates the textures at a hit. `toViewer` (any length) is the direction to the eye or light: a
+/// double-sided surface's normals are flipped towards it; a shading normal that would face away is pushed back to the tangent plane.
+Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer);
+
+/// Does the alpha test keep this hit? True for materials without a mask.
+bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit);
+
+/// True where the material (its factors and textures) can have a specular part anywhere: metallic > 0 or roughness < 1.
+bool hasSpecularPart(const Material& material);
+
+/// Bilinear (or nearest) lookup at uv with the texture's wrap modes, texel centres at +0.5. Raw 8-bit channels / 255, no sRGB decoding.
+Vec4 sampleTexture(const Texture& texture, Vec2 uv);
+/// The same, each texel's colour decoded from sRGB to linear before filtering (alpha is linear).
+Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv);
+
+/// GGX specular lobe with Smith height-correlated shadowing and Schlick Fresnel: f_s(l, v) <n.l>. All unit, on the normal's side.
+Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& toViewer);
+
+}  // namespace lrsm

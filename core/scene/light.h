@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace lrsm {
+
+/// Light arriving at a point if nothing is in the way.
+struct LightSample {
+    Vec3 toLight{0.0f, 1.0f, 0.0f};  ///< unit
+    float distance = 0.0f;           ///< metres; +inf for a directional light
+    Vec3 irradiance{0.0f};           ///< on a plane facing the light, W/m^2 per channel (L_d of Eq. 2, as a delta light gives it)
+};
+
+/// Spot: I / r^2 * falloff(cos); falloff = clamp((cos - cosOuter) / max(0.001, cosInner - cosOuter), 0, 1)^2, and the range
+/// window of KHR_lights_punctual. Cube face: I / r^2 inside its 90-degree square frustum (a direction on the border of two
+/// faces belongs to exactly one). Directional: the intensity.
+LightSample sampleLight(const Light& light, const Vec3& pWorld);
+
+/// A point light as six cube faces; together they are exactly the point light.
+std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name);
+
+}  // namespace lrsm

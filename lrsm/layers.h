@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/base/settings.h"
+#include "lrsm/rsm.h"
+
+#include <vector>
+
+namespace lrsm {
+
+/// Depth range (linear depth of the light, [0, 1] over the scene) and <n.l> range of one layer. Half-open, the last closed.
+struct LayerRange {
+    float depthMin = 0.0f;  ///< where the layer's stored texels begin: zMin_l of Eq. 15, overlap included
+    float depthMax = 1.0f;  ///< zMax_l
+    float delta = 0.0f;     ///< width of the overlap at either end, in linear depth
+    bool decayAtMin = false, decayAtMax = false;  ///< does Eq. 15 fall off at that end?
+    float nDotLMin = 0.0f;
+    float nDotLMax = 1.0f;
+    bool operator==(const LayerRange&) const = default;
+};
+
+/// One LRSM texel: Table 1's three textures, in the values the storage holds. Premultiplied by the layer's coverage.
+struct alignas(16) LrsmTexel {
+    float radiance[4] = {};  ///< A R (rgb), unused
+    float normal[4] = {};    ///< alpha n, alpha (half)
+    float depth[4] = {};     ///< alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), alpha (UNORM16), unused
+};
+
+/// Layered reflective shadow map of one light: every layer's full mip chain.
+struct Lrsm {
+    LightProjection projection;
+    int baseResolution = 1;              ///< half the RSM's
+    std::vector<LayerRange> ranges;      ///< of the layers kept
+    std::vector<std::size_t> levelOffset;  ///< first texel of each level within a layer
+    std::size_t texelsPerLayer = 0;
+    std::vector<LrsmTexel> texels;       ///< layer-major
+    std::vector<std::uint64_t> validTexelsPerLayer;  ///< RSM texels assigned to each layer kept
+    int layersAsked = 0;                 ///< before empty ones were dropped
+    std::uint64_t negativeVariances = 0; ///< mip texels whose z^2 - z*z came out below 0, counted before any floor
+    ConversionCounts conversions;
+
+    int levels() const { return int(levelOffset.size()); }
+    int layers() const { return int(ranges.size()); }
+    int resolutionAt(int level) const { return baseResolution >> level; }
+    const LrsmTexel* level(int layer, int lod) const
+    {
+        return texels.data() + std::size_t(layer) * texelsPerLayer + levelOffset[std::size_t(lod)];
+    }
+    std::size_t byteSize() const { return texels.size() * sizeof(LrsmTexel); }
+    /// In Table 1's formats: 24 bytes a texel.
+    std::size_t gpuBytes() const { return texels.size() * 24; }
+};
+
+/// Bytes that a layer of an LRSM for this RSM resolution holds (x layers kept = byteSize).
+std::size_t predictLayerBytes(int rsmResolution);
+
+/// The (a+1)(b+1) ranges for this RSM (Sec. 4.3), empty layers included.
+std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings);
+
+/// Each 2x2 RSM block merges per layer into the base level; full mip chains follow (2x2 box in float32, fixed order, converted per level).
+Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings);
+
+/// Eq. 15: f(z_c) with smoothstep k, clamped to [0, 1]; 0 outside the range, 1 at an end that does not decay.
+float decay(const LayerRange& range, float zc);
+
+}  // namespace lrsm

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/base/formats.h"
+#include "core/base/image.h"
+#include "core/raster/rasterize.h"
+#include "core/scene/requirements.h"
+#include "lrsm/light_projection.h"
+
+namespace lrsm {
+
+/// One texel of a reflective shadow map, in the values its storage holds (storage = gpu: each component is representable as half; depth is float32).
+struct RsmTexel {
+    Vec3 radiance{0.0f};    ///< rho L_d <n.l> / pi, W/(m^2 sr)
+    float coverage = 0.0f;  ///< 1 where a surface was drawn
+    Vec3 normal{0.0f};      ///< unit before rounding, towards the light
+    float nDotL = 0.0f;     ///< of the geometric situation at the texel, in [0, 1]
+};
+
+struct Rsm {
+    LightProjection projection;
+    Image<RsmTexel> texels;
+    Image<float> depthLinear;  ///< [0, 1]; 1 where empty
+    RasterCounts raster;
+    ConversionCounts conversions;
+
+    std::size_t byteSize() const { return texels.byteSize() + depthLinear.byteSize(); }
+    /// The same in the GPU's formats: two 16-bit x 4 textures and a 32-bit depth.
+    static std::size_t gpuBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * 20; }
+    static std::size_t predictBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * (sizeof(RsmTexel) + sizeof(float)); }
+};
+
+/// Renders the scene from one light (Sec. 3.2, [DS05]).
+Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings);
+
+}  // namespace lrsm

@@ -1,0 +1,62 @@
+#include "core/base/elementary.h"
+
+#include "catch.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace lrsm;
+using Big = boost::multiprecision::cpp_bin_float_50;
+
+TEST_CASE("sinCos, log2Exact, exp2Exact hold their bounds against 50-digit arithmetic", "[core][elementary]")
+{
+    std::mt19937_64 random(1);
+    double worstSin = 0, worstLog = 0, worstExp = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double scale = std::ldexp(1.0, static_cast<int>(random() % 30) - 10);
+        const double angle = std::uniform_real_distribution<>(-scale, scale)(random);
+        const SinCos sc = sinCos(angle);
+        worstSin = std::max({worstSin, std::abs(static_cast<double>(Big(sc.sin) - sin(Big(angle)))),
+                             std::abs(static_cast<double>(Big(sc.cos) - cos(Big(angle))))});
+
+        const double x = std::ldexp(std::uniform_real_distribution<>(0.5, 1.0)(random), static_cast<int>(random() % 200) - 100);
+        const Big exactLog = log(Big(x)) / log(Big(2));
+        worstLog = std::max(worstLog, std::abs(static_cast<double>(Big(log2Exact(x)) - exactLog)) /
+                                          std::max(1.0, std::abs(static_cast<double>(exactLog))));
+
+        const double y = std::uniform_real_distribution<>(-900.0, 900.0)(random);
+        const Big exactExp = pow(Big(2), Big(y));
+        worstExp = std::max(worstExp, std::abs(static_cast<double>((Big(exp2Exact(y)) - exactExp) / exactExp)));
+    }
+    CAPTURE(worstSin, worstLog, worstExp);
+    CHECK(worstSin <= kSinCosMaxError);
+    CHECK(worstLog <= kLog2MaxError);
+    CHECK(worstExp <= kExp2MaxError);
+}
+
+TEST_CASE("fastLog2 holds its bound everywhere and is exact at powers of two", "[core][elementary]")
+{
+    double worst = 0;
+    float worstAt = 0;
+    for (float x = 1e-6f; x < 1e6f; x = std::nextafter(x * 1.00001f, 1e9f)) {
+        const double error = std::abs(static_cast<double>(fastLog2(x)) - std::log2(static_cast<double>(x)));
+        if (error > worst) worst = error, worstAt = x;
+    }
+    CAPTURE(worst, worstAt);
+    CHECK(worst <= static_cast<double>(kFastLog2MaxError));
+    for (int e = -100; e <= 100; ++e) CHECK(fastLog2(std::ldexp(1.0f, e)) == static_cast<float>(e));
+}
+
+TEST_CASE("elementary functions at their edges", "[core][elementary]")
+{
+    CHECK(std::isnan(sinCos(std::nan("")).sin));
+    CHECK(std::isnan(log2Exact(-1.0)));
+    CHECK(std::isinf(log2Exact(0.0)));
+    CHECK(exp2Exact(2000.0) == std::numeric_limits<double>::infinity());
+    CHECK(exp2Exact(-2000.0) == 0.0);
+    for (int e = -100; e <= 100; ++e) CHECK(exp2Exact(e) == std::ldexp(1.0, e));
+    CHECK(power(0.0, 2.4) == 0.0);
+    CHECK(power(9.0, 0.5) == Approx(3.0).epsilon(1e-14));
+}

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/base/settings.h"
+#include "core/scene/scene.h"
+#include "voxel/bit_grid.h"
+
+namespace lrsm {
+
+/// Scene -> binary occupancy (Sec. 3.2). `conservative`: exactly the voxels whose closed box the closed triangle overlaps (26-separating);
+/// `thin`: Schwarz and Seidel 2010's 6-separating test, a subset; `raster`: projection along the dominant axis sampled at pixel centres,
+/// what [CG12] does without conservative rasterization (it has holes).
+/// Triangles with a non-finite vertex are dropped; degenerate ones voxelize as the segment or point they are. Independent of thread count.
+/// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it.
+BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
+
+/// The same for one bare triangle list in world space: what tests drive.
+BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelFrame& frame, Voxelization mode);
+
+}  // namespace lrsm
