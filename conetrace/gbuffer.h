@@ -2,12 +2,13 @@
 
 #include "core/base/image.h"
 #include "core/raster/rasterize.h"
+#include "core/scene/camera.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
 
 namespace lrsm {
 
-/// What the eye sees, one surface a pixel; structure of arrays, zero where nothing was drawn.
+/// What the eye sees along each pixel's ray (pixelRay, core/scene/camera.h), one surface a pixel; structure of arrays, zero where nothing was drawn.
 struct GBuffer {
     int width = 0, height = 0;
     Image<Vec3> position;         ///< world, metres
@@ -32,12 +33,6 @@ struct GBufferSettings {
 
 /// World-to-clip of a camera for a picture of this size; z/w in [0, 1], near at 0.
 Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& sceneBounds);
-
-/// Ray through a pixel's centre: what the reference shoots, so that the two pictures can be subtracted.
-struct CameraRay {
-    Vec3 origin, direction;
-};
-CameraRay pixelRay(const Camera& camera, int width, int height, float pixelX, float pixelY);
 
 GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requirements& needs, const GBufferSettings& settings);
 
