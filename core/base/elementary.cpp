@@ -1,11 +1,30 @@
 #include "core/base/elementary.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 namespace lrsm {
+namespace {
+
+constexpr int kSeriesTerms = 10;
+
+/// Coefficients (-1)^n / (2n + parity)! of sin (parity 1) or cos (parity 0), highest power first.
+constexpr std::array<double, kSeriesTerms> trigonometricSeries(int parity)
+{
+    std::array<double, kSeriesTerms> series{};
+    double factorial = 1.0;
+    for (int n = 0; n < kSeriesTerms; ++n) {
+        if (n > 0) factorial *= double((2 * n + parity - 1) * (2 * n + parity));
+        series[std::size_t(kSeriesTerms - 1 - n)] = (n % 2 ? -1.0 : 1.0) / factorial;
+    }
+    return series;
+}
+constexpr auto kSinSeries = trigonometricSeries(1), kCosSeries = trigonometricSeries(0);
+
+}  // namespace
 
 SinCos sinCos(double angleRadians)
 {
@@ -20,9 +39,11 @@ SinCos sinCos(double angleRadians)
 
     // Taylor series about 0; on |r| <= pi/4 the first omitted terms are below 1e-18.
     const double r2 = r * r;
-    double s = 1.0, c = 1.0;
-    for (int n = 8; n >= 1; --n) s = 1.0 - s * r2 / double((2 * n) * (2 * n + 1));
-    for (int n = 9; n >= 1; --n) c = 1.0 - c * r2 / double((2 * n - 1) * (2 * n));
+    double s = kSinSeries[0], c = kCosSeries[0];
+    for (int n = 1; n < kSeriesTerms; ++n) {
+        s = s * r2 + kSinSeries[n];
+        c = c * r2 + kCosSeries[n];
+    }
     s *= r;
 
     switch (static_cast<std::int64_t>(k) & 3) {

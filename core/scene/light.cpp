@@ -1,0 +1,72 @@
+#include "core/scene/light.h"
+
+#include "core/base/elementary.h"
+
+#include <array>
+
+namespace lrsm {
+namespace {
+
+/// Which of the six faces +x, -x, +y, -y, +z, -z a direction leaves a cube through; ties go to the earlier axis.
+int cubeFaceOf(const Vec3& d)
+{
+    const Vec3 a = glm::abs(d);
+    const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    return 2 * axis + (d[axis] < 0.0f ? 1 : 0);
+}
+
+/// KHR_lights_punctual's cone: squared linear ramp in the cosine from the outer to the inner angle.
+float coneFalloff(const Light& light, float cosFromAxis)
+{
+    const auto cosInner = static_cast<float>(sinCos(light.innerConeAngle).cos);
+    const auto cosOuter = static_cast<float>(sinCos(light.outerConeAngle).cos);
+    const float ramp = glm::clamp((cosFromAxis - cosOuter) / std::max(0.001f, cosInner - cosOuter), 0.0f, 1.0f);
+    return ramp * ramp;
+}
+
+float rangeWindow(float distance, float range)
+{
+    if (!std::isfinite(range)) return 1.0f;
+    const float ratio = distance / range, ratio2 = ratio * ratio;
+    return glm::clamp(1.0f - ratio2 * ratio2, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+LightSample sampleLight(const Light& light, const Vec3& pWorld)
+{
+    if (light.type == LightType::directional) return {-light.direction, kInfinity, light.intensity};
+
+    const Vec3 fromLight = pWorld - light.position;
+    const float distance = glm::length(fromLight);
+    if (!(distance > 0.0f)) return {-light.direction, 0.0f, Vec3(0.0f)};  // at the light itself: no direction, no light
+    const Vec3 direction = fromLight / distance;
+
+    float attenuation = rangeWindow(distance, light.range) / (distance * distance);
+    if (light.type == LightType::spot)
+        attenuation *= coneFalloff(light, glm::dot(direction, light.direction));
+    else if (cubeFaceOf(direction) != cubeFaceOf(light.direction))
+        attenuation = 0.0f;
+    return {-direction, distance, light.intensity * attenuation};
+}
+
+std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name)
+{
+    static constexpr std::array<const char*, 6> kFaceNames = {"+x", "-x", "+y", "-y", "+z", "-z"};
+    std::vector<Light> faces;
+    for (int face = 0; face < 6; ++face) {
+        Light light;
+        light.name = name + " " + kFaceNames[std::size_t(face)];
+        light.type = LightType::cubeFace;
+        light.position = position;
+        light.direction = Vec3(0.0f);
+        light.direction[face / 2] = face % 2 ? -1.0f : 1.0f;
+        light.up = face / 2 == 1 ? Vec3(0.0f, 0.0f, 1.0f) : Vec3(0.0f, 1.0f, 0.0f);
+        light.intensity = intensity;
+        light.range = range;
+        faces.push_back(light);
+    }
+    return faces;
+}
+
+}  // namespace lrsm
