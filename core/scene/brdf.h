@@ -22,19 +22,27 @@ struct Surface {
 };
 
 /// Interpolates the vertex streams and evaluates the textures at a hit. `toViewer` (any length) is the direction to the eye or light: a
-/// double-sided surface's normals are flipped towards it; a shading normal that would face away is pushed back to the tangent plane.
+/// double-sided surface's normals are flipped towards it; a shading normal that would face away is pushed back to the tangent plane
+/// of that direction (n.v = 0). A single-sided surface seen from behind keeps its normals: the caller culls it.
+///
+/// Normal maps use the mesh's tangents, else dP/du of the triangle itself, made orthogonal to the shading normal; where the uv are
+/// degenerate the map is ignored. Vertex colours multiply the base colour.
 Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer);
 
 /// Does the alpha test keep this hit? True for materials without a mask.
 bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit);
 
-/// True where the material (its factors and textures) can have a specular part anywhere: metallic > 0 or roughness < 1.
+/// True where the material (its factors and textures) can have a specular part anywhere: metallic > 0 or roughness < 1. Elsewhere
+/// `specularColor` is exactly 0.
 bool hasSpecularPart(const Material& material);
 
 /// Bilinear (or nearest) lookup at uv with the texture's wrap modes, texel centres at +0.5. Raw 8-bit channels / 255, no sRGB decoding.
 Vec4 sampleTexture(const Texture& texture, Vec2 uv);
 /// The same, each texel's colour decoded from sRGB to linear before filtering (alpha is linear).
 Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv);
+
+/// Smallest GGX alpha evaluated: a smoother surface shines as this one (a delta light in a perfect mirror has no finite value).
+inline constexpr float kMinSpecularAlpha = 1e-3f;
 
 /// GGX specular lobe with Smith height-correlated shadowing and Schlick Fresnel: f_s(l, v) <n.l>. All unit, on the normal's side.
 Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& toViewer);

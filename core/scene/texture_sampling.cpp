@@ -1,0 +1,99 @@
+#include "core/base/elementary.h"
+#include "core/scene/brdf.h"
+
+#include <array>
+
+namespace lrsm {
+namespace {
+
+/// The sRGB decoding function of IEC 61966-2-1 for the 256 stored values, rounded once to float.
+std::array<float, 256> linearFromSrgbTable()
+{
+    std::array<float, 256> table{};
+    for (int i = 0; i < 256; ++i) {
+        const double c = double(i) / 255.0;
+        table[std::size_t(i)] = float(c <= 0.04045 ? c / 12.92 : power((c + 0.055) / 1.055, 2.4));
+    }
+    return table;
+}
+const std::array<float, 256> kLinearFromSrgb = linearFromSrgbTable();
+
+/// One axis of a lookup: the two texels and the weight of the second. Wrapping the coordinate before scaling keeps any finite
+/// uv inside int; a non-finite one reads texel 0.
+struct Taps {
+    int i0, i1;
+    float fraction;
+};
+
+float wrapCoordinate(float u, Wrap wrap)
+{
+    if (!std::isfinite(u)) return 0.0f;
+    switch (wrap) {
+        case Wrap::clampToEdge: return std::clamp(u, 0.0f, 1.0f);
+        case Wrap::mirroredRepeat: {
+            const float period = u - 2.0f * std::floor(0.5f * u);  // in [0, 2]
+            return period <= 1.0f ? period : 2.0f - period;
+        }
+        default: return u - std::floor(u);  // in [0, 1]: a tiny negative u rounds to 1
+    }
+}
+
+/// Index of a neighbour that lies one texel outside: the far edge when repeating; the edge texel itself when clamping, and
+/// when mirroring, since the mirror image begins with the same texel.
+int wrapIndex(int i, int size, Wrap wrap)
+{
+    if (i >= 0 && i < size) return i;
+    if (wrap == Wrap::repeat) return i < 0 ? size - 1 : 0;
+    return i < 0 ? 0 : size - 1;
+}
+
+Taps tapsAlong(float u, int size, Wrap wrap, bool nearest)
+{
+    const float x = wrapCoordinate(u, wrap) * float(size);
+    if (nearest) {
+        const int i = wrapIndex(int(x), size, wrap);
+        return {i, i, 0.0f};
+    }
+    const float cell = std::floor(x - 0.5f);
+    const int i = int(cell);
+    return {wrapIndex(i, size, wrap), wrapIndex(i + 1, size, wrap), (x - 0.5f) - cell};
+}
+
+/// In double, where the products below are exact or rounded towards neither texel's outside: a constant stays the constant and
+/// the result lies between the texels.
+double bilinear(double v00, double v10, double v01, double v11, double tx, double ty)
+{
+    const double top = v00 + (v10 - v00) * tx;
+    const double bottom = v01 + (v11 - v01) * tx;
+    return top + (bottom - top) * ty;
+}
+
+template <class Decode>
+Vec4 sample(const Texture& texture, Vec2 uv, const Decode& decode)
+{
+    const Image<Rgba8>& image = texture.image;
+    if (image.empty()) return Vec4(1.0f);
+    const Taps x = tapsAlong(uv.x, image.width, texture.wrapS, texture.nearest);
+    const Taps y = tapsAlong(uv.y, image.height, texture.wrapT, texture.nearest);
+    const Rgba8 t00 = image.at(x.i0, y.i0), t10 = image.at(x.i1, y.i0);
+    const Rgba8 t01 = image.at(x.i0, y.i1), t11 = image.at(x.i1, y.i1);
+    const auto colour = [&](std::uint8_t Rgba8::*c) {
+        return float(bilinear(decode(t00.*c), decode(t10.*c), decode(t01.*c), decode(t11.*c), x.fraction, y.fraction));
+    };
+    const double alpha = bilinear(t00.a, t10.a, t01.a, t11.a, x.fraction, y.fraction);
+    return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), float(alpha / 255.0));
+}
+
+}  // namespace
+
+Vec4 sampleTexture(const Texture& texture, Vec2 uv)
+{
+    return sample(texture, uv, [](std::uint8_t value) { return double(float(value) / 255.0f); });
+}
+
+Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv)
+{
+    return sample(texture, uv, [](std::uint8_t value) { return double(kLinearFromSrgb[value]); });
+}
+
+}  // namespace lrsm
