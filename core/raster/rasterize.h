@@ -18,6 +18,11 @@ namespace lrsm {
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
+/// |depth - exact| <= this times the triangle's largest |z/w|: one rounding at the vertices, one at the pixel.
+inline constexpr float kRasterDepthMaxError = 0x1.1p-23f;
+/// |b1 - exact|, |b2 - exact| of an unclipped triangle, against the snapped corners' own perspective.
+inline constexpr float kRasterBarycentricMaxError = 0x1p-22f;
+
 /// One covered pixel: which triangle and where on it. Attributes are set up later, one visible fragment a pixel.
 struct Fragment {
     std::uint32_t triangle = kNoTriangle;  ///< index in submission order
@@ -49,7 +54,7 @@ struct RasterOutput {
 /// Keeps the fragment? Called for covered samples that pass the depth test, for triangles marked in `tested`; must be thread-safe.
 using FragmentTest = std::function<bool(const Fragment&)>;
 
-/// Parallel over tiles; same bits for any number of threads. `tested` (one flag a triangle, empty: none) says where `test` is consulted.
+/// Indices must be in range; width and height 1..16384 (InputError). Parallel over tiles; same bits for any number of threads. `tested` (one flag a triangle, empty: none) says where `test` is consulted.
 RasterOutput rasterize(const RasterInput& input, int width, int height, std::span<const std::uint8_t> tested = {},
                        const FragmentTest& test = {});
 
