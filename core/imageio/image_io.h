@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/base/image.h"
+#include "core/base/math.h"
+#include "core/imageio/display.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// EXR and PNG, by way of OpenImageIO: nothing else may include it (its 260 shared libraries cost 0.3-0.5 s at every start).
+/// Encoding gives bytes in memory, the same for the same input: no date, no host, no library version. Write them through OutputFolder.
+namespace lrsm {
+
+/// Channels that belong together: "irradiance" with R, G, B; "depth" with Z. Values interleaved, row 0 at the top.
+struct ImageLayer {
+    std::string name;                       ///< "" is what viewers show by default
+    std::vector<std::string> channelNames;  ///< without the layer's name
+    std::vector<float> values;              ///< width * height * channelNames.size()
+};
+
+struct LayeredImage {
+    int width = 0, height = 0;
+    std::vector<ImageLayer> layers;
+    std::vector<std::pair<std::string, std::string>> metadata;  ///< EXR only; keys in lower case begin with "lrsm:"
+
+    /// nullptr when there is none of this name.
+    const ImageLayer* find(const std::string& name) const;
+};
+
+/// Adds name.R, name.G, name.B; the picture must be as large as `image` (an image without layers takes its size).
+void addLayer(LayeredImage& image, const std::string& name, const Image<Vec3>& picture);
+/// Adds one channel, by default name.Y.
+void addLayer(LayeredImage& image, const std::string& name, const Image<float>& picture, const std::string& channel = "Y");
+
+/// A layer's R, G and B; a layer of one channel is spread to all three. InputError begins with `place` when the layer is not there.
+Image<Vec3> rgbLayer(const LayeredImage& image, const std::string& name, const std::string& place);
+/// A layer's first channel.
+Image<float> scalarLayer(const LayeredImage& image, const std::string& name, const std::string& place);
+
+/// OpenEXR, float32, ZIP. Reads back to the same bits (NaN payloads included).
+std::vector<std::byte> encodeExr(const LayeredImage& image);
+/// 8-bit RGB PNG, values as they are (already sRGB encoded).
+std::vector<std::byte> encodePng(const Image<Rgb8>& picture);
+
+/// EXR (first part, layers by channel name) or PNG and whatever else OpenImageIO reads; integer colour is decoded from sRGB to linear.
+/// InputError when it cannot be opened, is not a picture, or is larger than 2^28 pixels.
+LayeredImage readImage(const std::string& path);
+
+}  // namespace lrsm
