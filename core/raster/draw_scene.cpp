@@ -1,0 +1,80 @@
+#include "core/raster/draw_scene.h"
+
+#include "core/base/parallel.h"
+
+#include <algorithm>
+
+namespace lrsm {
+
+namespace {
+
+/// The scene as the rasterizer wants it: one vertex and one triangle array.
+struct Submission {
+    std::vector<Vec4> clipPositions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Cull> cull;
+    std::vector<std::uint8_t> tested;  ///< empty: no alpha test anywhere
+    std::vector<std::uint32_t> firstVertex, firstTriangle;
+};
+
+Submission layOut(const Scene& scene, bool alphaTest)
+{
+    Submission all;
+    std::uint32_t vertices = 0, triangles = 0;
+    bool anyMask = false;
+    for (const Mesh& mesh : scene.meshes) {
+        all.firstVertex.push_back(vertices);
+        all.firstTriangle.push_back(triangles);
+        vertices += static_cast<std::uint32_t>(mesh.positions.size());
+        triangles += static_cast<std::uint32_t>(mesh.triangles.size());
+        anyMask = anyMask || scene.materials[std::size_t(mesh.material)].alphaMask;
+    }
+    all.firstTriangle.push_back(triangles);
+    all.clipPositions.resize(vertices);
+    all.triangles.resize(triangles);
+    all.cull.resize(triangles);
+    if (alphaTest && anyMask) all.tested.resize(triangles);
+    return all;
+}
+
+}  // namespace
+
+SceneFragments drawScene(const Scene& scene, const Mat4& clipFromWorld, const Requirements& needs, int width, int height)
+{
+    Submission all = layOut(scene, needs.alphaTest);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        const Mesh& mesh = scene.meshes[m];
+        const Material& material = scene.materials[std::size_t(mesh.material)];
+        const std::uint32_t v0 = all.firstVertex[m], t0 = all.firstTriangle[m];
+        parallelFor(mesh.positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) all.clipPositions[v0 + i] = clipFromWorld * Vec4(mesh.positions[i], 1.0f);
+        });
+        parallelFor(mesh.triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t k = 0; k < 3; ++k) all.triangles[t0 + i][k] = v0 + mesh.triangles[i][k];
+        });
+        std::fill_n(all.cull.begin() + t0, mesh.triangles.size(), material.doubleSided ? Cull::none : Cull::back);
+        if (!all.tested.empty()) std::fill_n(all.tested.begin() + t0, mesh.triangles.size(), std::uint8_t(material.alphaMask));
+    }
+
+    RasterOutput drawn = rasterize({all.clipPositions, all.triangles, all.cull}, width, height, all.tested, [&](const Fragment& fragment) {
+        return passesAlphaTest(scene, hitOf(all.firstTriangle, fragment));
+    });
+    return {std::move(drawn.fragments), drawn.counts, std::move(all.firstTriangle)};
+}
+
+SurfaceHit hitOf(const std::vector<std::uint32_t>& firstTriangle, const Fragment& fragment)
+{
+    const auto next = std::upper_bound(firstTriangle.begin(), firstTriangle.end(), fragment.triangle);
+    const auto mesh = static_cast<std::uint32_t>(next - firstTriangle.begin() - 1);
+    return {mesh, fragment.triangle - firstTriangle[mesh], fragment.b1, fragment.b2};
+}
+
+Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
+{
+    const Mesh& mesh = scene.meshes[hit.mesh];
+    const auto& t = mesh.triangles[hit.triangle];
+    return (1.0f - hit.b1 - hit.b2) * mesh.positions[t[0]] + hit.b1 * mesh.positions[t[1]] + hit.b2 * mesh.positions[t[2]];
+}
+
+}  // namespace lrsm

@@ -1,0 +1,69 @@
+// Dachsbacher and Stamminger, "Reflective Shadow Maps", I3D 2005.
+#include "lrsm/rsm.h"
+
+#include "core/base/parallel.h"
+#include "core/raster/draw_scene.h"
+#include "core/scene/light.h"
+
+namespace lrsm {
+
+namespace {
+
+struct ShadedTexel {
+    RsmTexel texel;
+    float depth = 1.0f;
+};
+
+/// Reflected radiance of a diffuse surface lit by the light alone: rho L_d <n.l> / pi.
+ShadedTexel shadeTexel(const Scene& scene, const Light& light, const LightProjection& projection, const SurfaceHit& hit)
+{
+    const Vec3 toLight = directionToLight(projection, positionOf(scene, hit));
+    const Surface surface = evaluateSurface(scene, hit, toLight);
+    const float nDotL = glm::clamp(glm::dot(surface.normal, toLight), 0.0f, 1.0f);
+
+    ShadedTexel shaded;
+    shaded.texel.radiance = surface.albedo * sampleLight(light, surface.position).irradiance * (nDotL / kPi);
+    shaded.texel.coverage = 1.0f;
+    shaded.texel.normal = surface.normal;
+    shaded.texel.nDotL = nDotL;
+    shaded.depth = glm::clamp(projectToLight(projection, surface.position).depth, 0.0f, 1.0f);
+    return shaded;
+}
+
+void toHalf(RsmTexel& texel, HalfRounding rounding, ConversionCounts& counts)
+{
+    for (int k = 0; k < 3; ++k) texel.radiance[k] = roundToHalf(texel.radiance[k], rounding, counts);
+    for (int k = 0; k < 3; ++k) texel.normal[k] = roundToHalf(texel.normal[k], rounding, counts);
+    texel.nDotL = roundToHalf(texel.nDotL, rounding, counts);
+}
+
+}  // namespace
+
+Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings)
+{
+    Rsm rsm;
+    rsm.projection = fitLightProjection(light, scene.bounds, settings.resolution);
+    const int n = rsm.projection.resolution;
+    const SceneFragments drawn = drawScene(scene, clipFromWorld(rsm.projection), needs, n, n);
+    rsm.raster = drawn.counts;
+    rsm.texels = Image<RsmTexel>(n, n);
+    rsm.depthLinear = Image<float>(n, n, 1.0f);
+
+    constexpr std::size_t kChunk = 8192;
+    const std::size_t count = rsm.texels.texels.size();
+    std::vector<ConversionCounts> counts((count + kChunk - 1) / kChunk);
+    parallelFor(count, kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Fragment& fragment = drawn.fragments.texels[i];
+            if (fragment.triangle == kNoTriangle) continue;
+            ShadedTexel shaded = shadeTexel(scene, light, rsm.projection, hitOf(drawn.firstTriangle, fragment));
+            if (settings.storage == Storage::gpu) toHalf(shaded.texel, settings.halfRounding, counts[begin / kChunk]);
+            rsm.texels.texels[i] = shaded.texel;
+            rsm.depthLinear.texels[i] = shaded.depth;
+        }
+    });
+    for (const ConversionCounts& c : counts) rsm.conversions += c;
+    return rsm;
+}
+
+}  // namespace lrsm
