@@ -15,6 +15,7 @@ struct VoxelFrame {
     int resolution = 1;
 
     Vec3 voxelsFromWorld(const Vec3& pWorld) const { return (pWorld - origin) / voxelSize; }
+    bool operator==(const VoxelFrame&) const = default;
 };
 
 /// Cube centred on `bounds`: the longest side plus a margin of two voxels at either end (less where the resolution is below 8).

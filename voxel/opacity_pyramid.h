@@ -3,33 +3,51 @@
 #include "core/base/settings.h"
 #include "voxel/bit_grid.h"
 
-#include <span>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace lrsm {
 
-/// Pre-filtered occupancy: level 0 is the bit grid, level l >= 1 holds (resolution >> l)^3 values in [0, 1], down to 1x1x1, x-fastest.
-/// `mean`: mean of the 8 children (the paper, literally); `coverage`: their sum / 4, clamped; `max`. Each level is made from the stored level
-/// below in float32 in a fixed order, then converted (`storage`: UNORM8 or float32).
+/// Pre-filtered occupancy: level 0 is the bit grid, level l >= 1 holds (resolution >> l)^3 texels in [0, 1], down to 1x1x1, x-fastest.
 ///
-/// With OpacityAxes::directional there are three such chains: area density along x, y and z. A block of 2^3, 4^3 or 8^3 voxels holds the
-/// fraction of its columns along the axis that hold any occupied voxel, divided by the block's edge in voxels and multiplied by it again as
-/// density per base voxel: levels 1-3 = popcount(OR along the axis) / 4^l / 2^l; above that the mean. A two-voxel-thick wall counts once.
-/// Stored scaled by 2^min(l,3) so that UNORM8 keeps its precision; `densityScale(level)` undoes it.
+/// OpacityAxes::isotropic, one value a texel. `mean`: mean of the 8 children (the paper, literally); `coverage`: their sum / 4, clamped:
+/// keeps a one-voxel-thick wall opaque; `max`. Each level is made from the stored level below.
+///
+/// OpacityAxes::directional, three values a texel: area density along x, y and z. A block of 2^3, 4^3 or 8^3 voxels (levels 1-3) stores
+/// the fraction of its columns along the axis that hold any occupied voxel, so a two-voxel-thick wall counts once. Per base voxel of depth
+/// that is a density of fraction / 2^l: `densityScale` restores it. From level 4 on `mipFilter` combines the 8 children and the scale
+/// stays 1/8.
+///
+/// UNORM8 levels hold the exact value, rounded half up (what the D3D rule gives for an exact input); float32 levels are summed over x
+/// first, then y, then z.
 struct OpacityPyramid {
     BitGrid base;
     OpacityAxes axes = OpacityAxes::isotropic;
     Storage storage = Storage::gpu;
     MipFilter mipFilter = MipFilter::mean;
-    std::vector<std::size_t> levelOffset;    ///< of level l >= 1 in each chain (levelOffset[0] is unused)
-    std::vector<std::uint8_t> unorm8[3];     ///< [0] isotropic, or x, y, z; storage == gpu
-    std::vector<float> float32[3];           ///< storage == float32
+    std::vector<std::size_t> levelOffset;  ///< in texels, of level l >= 1 (levelOffset[0] is 0 and unused)
+    std::vector<std::uint8_t> unorm8;      ///< levels 1.. one after the other, channels() interleaved; storage == gpu
+    std::vector<float> float32;            ///< the same; storage == float32
+
+    /// For the sampler alone: per 4^3 brick, 1 + the highest level up to which every lookup centred in the brick is 0; 0 if none.
+    std::vector<std::uint8_t> emptyLevels;
 
     int levels() const { return int(levelOffset.size()); }
+    int channels() const { return axes == OpacityAxes::directional ? 3 : 1; }
     int resolutionAt(int level) const { return base.frame.resolution >> level; }
+    std::size_t texelIndex(int level, int x, int y, int z) const
+    {
+        const auto n = std::size_t(resolutionAt(level));
+        return levelOffset[std::size_t(level)] + (std::size_t(z) * n + std::size_t(y)) * n + std::size_t(x);
+    }
+    /// Stored value in [0, 1], decoded; level 0: the bit. `axis` 0 for isotropic. Coordinates inside the level.
+    float value(int level, int axis, int x, int y, int z) const;
+    /// All that is held: bits, levels and emptyLevels.
     std::size_t byteSize() const;
 };
 
-/// 1 for the isotropic pyramid and level 0; 2^-min(level, 3) for directional chains.
+/// 1 for the isotropic pyramid and level 0; 2^-min(level, 3) for directional ones.
 float densityScale(const OpacityPyramid& pyramid, int level);
 
 OpacityPyramid buildPyramid(BitGrid base, const VoxelSettings& settings);
@@ -37,8 +55,12 @@ OpacityPyramid buildPyramid(BitGrid base, const VoxelSettings& settings);
 /// Exact bytes that buildPyramid's result will hold, without building it (spec: predicted equals measured).
 std::size_t predictPyramidBytes(const VoxelSettings& settings);
 
+/// The same occupancy as a GPU holds it (Table 1): R8 textures with the base level at one byte a voxel, `channels` bytes a texel above.
+std::size_t predictPyramidGpuBytes(const VoxelSettings& settings);
+
 /// Trilinear lookup at one level: texel centres at +0.5, border 0. pVoxels in base voxels. Isotropic: .x is the opacity, .y = .z = .x.
 /// Directional: density per base voxel along each axis (level 0: the bit, three times).
+/// These two choose among the pyramid's kinds at every call; a hot loop takes the sampler in sample_opacity.h, which they wrap.
 Vec3 sampleLevel(const OpacityPyramid& pyramid, const Vec3& pVoxels, int level, FilterFraction fraction);
 
 /// Quadrilinear: `level` in [0, levels - 1], clamped; exact at whole levels.

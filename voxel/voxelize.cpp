@@ -1,0 +1,89 @@
+#include "voxel/voxelize.h"
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "voxel/voxelize_triangle.h"
+
+#include <new>
+
+namespace lrsm {
+namespace {
+
+constexpr std::size_t kTrianglesPerTask = 1024;
+constexpr std::size_t kBigTriangleColumns = 16384;  ///< above: split by rows, so that two triangles of a floor keep all cores busy
+constexpr int kRowsPerTask = 16;
+
+BitGrid emptyGrid(const VoxelFrame& frame)
+{
+    BitGrid grid;
+    grid.frame = frame;
+    const auto edge = std::size_t(BitGrid::bricksPerEdge(frame.resolution));
+    try {
+        grid.bricks.assign(edge * edge * edge, 0);
+    } catch (const std::bad_alloc&) {
+        throw MachineError("voxel grid", "no memory for " + std::to_string(edge * edge * edge * 8) + " bytes; lower voxel.resolution");
+    }
+    return grid;
+}
+
+/// corners(i) gives the three world positions of triangle i.
+template <class Corners>
+void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Corners& corners)
+{
+    std::vector<std::vector<TriangleSetup>> bigOfChunk((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
+    parallelFor(count, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::array<Vec3, 3> p = corners(i);
+            const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], grid.frame);
+            for (int k = 0; k < pieces.count; ++k) {
+                const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], grid.frame.resolution, mode);
+                if (setup.empty) continue;
+                if (setup.columnCount() > kBigTriangleColumns)
+                    bigOfChunk[begin / kTrianglesPerTask].push_back(setup);
+                else
+                    voxelizeRows(setup, setup.cells[setup.rowAxis], mode, grid);
+            }
+        }
+    });
+
+    struct Task {
+        const TriangleSetup* setup;
+        Span rows;
+    };
+    std::vector<Task> tasks;
+    for (const auto& big : bigOfChunk) {
+        for (const TriangleSetup& setup : big) {
+            const Span rows = setup.cells[setup.rowAxis];
+            for (int row = rows.lo; row <= rows.hi; row += kRowsPerTask)
+                tasks.push_back({&setup, {row, std::min(row + kRowsPerTask - 1, rows.hi)}});
+        }
+    }
+    parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) voxelizeRows(*tasks[i].setup, tasks[i].rows, mode, grid);
+    });
+}
+
+}  // namespace
+
+BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
+{
+    BitGrid grid = emptyGrid(fitVoxelFrame(scene.bounds, settings.resolution));
+    for (const Mesh& mesh : scene.meshes) {
+        voxelizeInto(grid, mesh.triangles.size(), settings.mode, [&](std::size_t i) {
+            const auto& t = mesh.triangles[i];
+            return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+        });
+    }
+    return grid;
+}
+
+BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelFrame& frame, Voxelization mode)
+{
+    BitGrid grid = emptyGrid(frame);
+    voxelizeInto(grid, corners.size() / 3, mode, [&](std::size_t i) {
+        return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    });
+    return grid;
+}
+
+}  // namespace lrsm
