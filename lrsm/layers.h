@@ -53,11 +53,25 @@ struct Lrsm {
 /// Bytes that a layer of an LRSM for this RSM resolution holds (x layers kept = byteSize).
 std::size_t predictLayerBytes(int rsmResolution);
 
-/// The (a+1)(b+1) ranges for this RSM (Sec. 4.3), empty layers included.
+/// The (a+1)(b+1) ranges for this RSM (Sec. 4.3), empty layers included; nearest depth slice first, the <n.l> slices of one together.
+/// Neighbouring depth ranges overlap by exactly delta, centred on the cut between equal slices. Without an overlap (or where a slice is so
+/// thin that delta rounds to 0) they are a partition. A range is never thinner than 2^-16 / depthLayers, even if all depths are equal.
 std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings);
 
 /// Each 2x2 RSM block merges per layer into the base level; full mip chains follow (2x2 box in float32, fixed order, converted per level).
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings);
+
+/// Linear depth -> the layer's own [0, 1], in which its z and z^2 are stored. Widths (radii) scale by 1 / (depthMax - depthMin).
+inline float warpDepth(const LayerRange& range, float z)
+{
+    return (z - range.depthMin) / (range.depthMax - range.depthMin);
+}
+
+/// Does the layer's depth interval meet [zc - r, zc + r]?
+inline bool touches(const LayerRange& range, float zc, float r)
+{
+    return range.depthMin <= zc + r && range.depthMax >= zc - r;
+}
 
 /// Eq. 15: f(z_c) with smoothstep k, clamped to [0, 1]; 0 outside the range, 1 at an end that does not decay.
 float decay(const LayerRange& range, float zc);

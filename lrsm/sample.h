@@ -1,37 +1,56 @@
 #pragma once
 
+#include "core/base/elementary.h"
+#include "lrsm/footprint.h"
 #include "lrsm/gaussian_visibility.h"
 #include "lrsm/layers.h"
 
 namespace lrsm {
 
-/// What the pre-filtered texture of one layer holds at a footprint, after trilinear filtering; still premultiplied.
-struct FilteredTexel {
-    Vec3 radiance{0.0f};        ///< A R
-    Vec3 normal{0.0f};          ///< alpha n
-    float normalAlpha = 0.0f;   ///< alpha stored with the normal
-    float depth = 0.0f;         ///< alpha z, warped
-    float depthSquared = 0.0f;  ///< alpha z^2
-    float depthAlpha = 0.0f;    ///< alpha stored with the depth
-};
-
 /// GPU sampler: texel centres at +0.5, bilinear, trilinear between levels, border 0, level clamped to [0, last].
-FilteredTexel sampleLayer(const Lrsm& lrsm, int layer, float u, float v, float level, FilterFraction fraction);
+inline FilteredTexel sampleLayer(const Lrsm& lrsm, int layer, float u, float v, float level, FilterFraction fraction)
+{
+    return sampleLayer(lrsm, layer, makeFootprint(lrsm, u, v, level, fraction));
+}
 
 /// log2(diameter in LRSM texels) + bias, clamped to >= minLevel: Sec. 5's mip level (its `log` is base 2).
-float lrsmLevel(float diameterMetres, float rsmTexelSizeMetres, float bias, float minLevel);
+/// An LRSM texel is two RSM texels wide. A diameter of 0 gives minLevel.
+inline float lrsmLevel(float diameterMetres, float rsmTexelSizeMetres, float bias, float minLevel)
+{
+    const float diameterTexels = diameterMetres / (2.0f * rsmTexelSizeMetres);
+    return std::max(fastLog2(diameterTexels) + bias, minLevel);
+}
 
 /// Eq. 8: <nBar . v> clamped to >= 0; nBar = sum alpha n / sum alpha, not renormalised.
-float normalTerm(const FilteredTexel& texel, const Vec3& toReceiver);
+/// 0 where alpha is 0.
+inline float normalTerm(const FilteredTexel& texel, const Vec3& toReceiver)
+{
+    const float facing = glm::dot(texel.normal, toReceiver);
+    return facing > 0.0f && texel.normalAlpha > 0.0f ? facing / texel.normalAlpha : 0.0f;
+}
 /// The `backface` setting's variants of the term: N, min(1, clamp N), or 1 where N > 0.
-float backfaceWeight(float n, Backface mode, float clamp);
+inline float backfaceWeight(float n, Backface mode, float clamp)
+{
+    switch (mode) {
+        case Backface::cosine: return n;
+        case Backface::clamp: return std::min(1.0f, clamp * n);
+        default: return n > 0.0f ? 1.0f : 0.0f;
+    }
+}
 
 /// Eq. 10, 11: mean and variance (floored at kVarianceFloor when > 0 is asked; raw when floor = -inf) of the warped depth.
 struct DepthMoments {
     float mean = 0.0f, variance = 0.0f;
     bool negative = false;  ///< the raw variance was below 0
 };
-DepthMoments depthMoments(const FilteredTexel& texel, float floor = kVarianceFloor);
+/// All zero where alpha is 0.
+inline DepthMoments depthMoments(const FilteredTexel& texel, float floor = kVarianceFloor)
+{
+    if (!(texel.depthAlpha > 0.0f)) return {};
+    const float mean = texel.depth / texel.depthAlpha;
+    const float variance = texel.depthSquared / texel.depthAlpha - mean * mean;
+    return {mean, std::max(variance, floor), variance < 0.0f};
+}
 
 /// One cone sample: centre, radius, unit direction from the sample to the receiver.
 struct ConeSample {
