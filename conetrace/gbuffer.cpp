@@ -27,15 +27,6 @@ double farthestDepth(const Camera& camera, const Aabb& bounds)
     return glm::dot(axis, farCorner - DVec3(camera.position));
 }
 
-/// The eye's side of a surface: from behind a single-sided one is culled, so `position` decides only double-sided flips.
-Vec3 directionToEye(const Camera& camera, const Vec3& position)
-{
-    if (!camera.perspective) return -camera.forward;
-    const Vec3 toEye = camera.position - position;
-    const float length = glm::length(toEye);
-    return length > 0.0f ? toEye / length : -camera.forward;
-}
-
 void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& camera, const SurfaceHit& hit)
 {
     const Surface surface = evaluateSurface(scene, hit, directionToEye(camera, positionOf(scene, hit)));
@@ -83,6 +74,14 @@ Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& scen
         m[3][3] = 1.0f;
     }
     return m;
+}
+
+Vec3 directionToEye(const Camera& camera, const Vec3& pWorld)
+{
+    if (!camera.perspective) return -camera.forward;
+    const Vec3 toEye = camera.position - pWorld;
+    const float length = glm::length(toEye);
+    return length > 0.0f ? toEye / length : -camera.forward;
 }
 
 GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requirements& needs, const GBufferSettings& settings)

@@ -34,6 +34,9 @@ struct GBufferSettings {
 /// World-to-clip of a camera for a picture of this size; z/w in [0, 1], near at 0.
 Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& sceneBounds);
 
+/// Unit direction from a point to the eye; against the viewing axis for an orthographic camera.
+Vec3 directionToEye(const Camera& camera, const Vec3& pWorld);
+
 GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requirements& needs, const GBufferSettings& settings);
 
 }  // namespace lrsm

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "conetrace/gbuffer.h"
+#include "core/base/settings.h"
+#include "lrsm/rsm.h"
+#include "voxel/opacity_pyramid.h"
+
+#include <vector>
+
+namespace lrsm {
+
+struct DirectResult {
+    Image<Vec3> radiance;  ///< towards the eye, W/(m^2 sr); 0 where nothing was drawn
+};
+
+/// Light from all delta lights, reflected once towards the eye: sum over lights of L_d V (albedo <n.l> / pi + f_s <n.l>).
+/// `rsms` holds one map a light, in the scene's order (read by Shadows::hard alone); `opacity` is read by Shadows::cone alone and may be null
+/// otherwise. Geometry that faces away from a light is unlit, whatever its shading normal says.
+DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, const std::vector<Rsm>& rsms,
+                         const OpacityPyramid* opacity, const Requirements& needs, const DirectSettings& settings);
+
+/// V by the RSM's depth: 0 where the nearest texel's surface is nearer to the light than p by more than the bias, else 1. Outside the map: 1.
+/// The bias is depthBiasTexels * texel size * (tan(angle between normal and light) + kFlatBias): what a plane's depth changes within a texel.
+/// nGeometric faces the light (unit).
+float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float depthBiasTexels);
+inline constexpr float kFlatBias = 0.1f;
+
+/// V by a cone towards the light, Eq. 1 front to back with nothing gathered: the transmittance left at `distance` metres (may be infinite).
+float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance,
+                     float tanHalfAperture);
+
+}  // namespace lrsm
