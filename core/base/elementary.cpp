@@ -1,6 +1,7 @@
 #include "core/base/elementary.h"
 
 #include <array>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -58,6 +59,27 @@ double tangent(double angleRadians)
 {
     const SinCos sc = sinCos(angleRadians);
     return sc.sin / sc.cos;
+}
+
+double arcTangent2(double y, double x)
+{
+    if (std::isnan(x) || std::isnan(y)) return std::numeric_limits<double>::quiet_NaN();
+    const double ax = std::abs(x), ay = std::abs(y), larger = std::max(ax, ay);
+    if (larger == 0.0) return 0.0;
+    double t = std::min(ax, ay) / larger;  // in [0, 1]; infinities give NaN here
+    if (std::isnan(t)) t = 1.0;
+
+    // Two half-angle steps, atan t = 2 atan(t / (1 + sqrt(1 + t^2))), leave t <= tan(pi/16) = 0.1989; then the series,
+    // whose first omitted term is below 1e-18.
+    for (int i = 0; i < 2; ++i) t = t / (1.0 + std::sqrt(1.0 + t * t));
+    const double t2 = t * t;
+    double series = 0.0;
+    for (int n = 23; n >= 1; n -= 2) series = 1.0 / double(n) - series * t2;
+    double angle = 4.0 * t * series;
+
+    if (ay > ax) angle = 1.57079632679489661923 - angle;
+    if (x < 0.0) angle = 3.14159265358979323846 - angle;
+    return std::copysign(angle, y);
 }
 
 double log2Exact(double x)

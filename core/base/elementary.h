@@ -16,6 +16,10 @@ SinCos sinCos(double angleRadians);
 double tangent(double angleRadians);
 inline constexpr double kSinCosMaxError = 4e-16;
 
+/// Angle of the point (x, y) from the x axis, in [-pi, pi]; error <= kArcTangentMaxError. (0, 0) gives 0; NaN in, NaN out.
+double arcTangent2(double y, double x);
+inline constexpr double kArcTangentMaxError = 1e-15;
+
 /// Base-2 logarithm of x > 0 (normal double); error <= kLog2MaxError * max(1, |log2 x|).
 /// 0 gives -infinity, a negative argument or NaN gives NaN.
 double log2Exact(double x);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/scene/gltf_asset.h"
+
+#include <span>
+
+/// Node transforms and morph weights of a glTF asset at a moment (glTF 2.0, section 3.11 and appendix C).
+namespace lrsm::gltf {
+
+struct Pose {
+    std::vector<DMat4> worldFromNode;          ///< one a node
+    std::vector<std::vector<float>> weights;   ///< morph weights, one list a node; empty where the node has no targets
+};
+
+/// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds.
+Pose poseNodes(const Asset& asset, int animation, float time);
+
+/// A channel's value at `time`, clamped to its first and last keyframe: channel.width numbers into `value`. STEP holds, LINEAR
+/// interpolates (rotations along the shorter great arc), CUBICSPLINE is Hermite's; a rotation comes out with unit length.
+void sampleChannel(const Channel& channel, float time, std::span<double> value);
+
+/// Spherical interpolation between unit quaternions (x, y, z, w), t in [0, 1], along the shorter arc.
+glm::dvec4 slerp(const glm::dvec4& from, glm::dvec4 to, double t);
+
+}  // namespace lrsm::gltf

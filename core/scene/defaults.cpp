@@ -1,0 +1,58 @@
+#include "core/scene/defaults.h"
+
+#include "core/base/elementary.h"
+
+namespace lrsm {
+namespace {
+
+Vec3 normalized(const Vec3& v)
+{
+    return v / std::sqrt(glm::dot(v, v));
+}
+
+/// The part of `up` orthogonal to `axis` (both unit, not parallel).
+Vec3 orthogonalUp(const Vec3& up, const Vec3& axis)
+{
+    return normalized(up - axis * glm::dot(up, axis));
+}
+
+}  // namespace
+
+void addDefaultLight(Scene& scene)
+{
+    Light sun;
+    sun.name = "default sun";
+    sun.type = LightType::directional;
+    sun.direction = normalized(Vec3(-0.4f, -1.0f, -0.55f));
+    sun.up = orthogonalUp(Vec3(0.0f, 1.0f, 0.0f), sun.direction);
+    sun.intensity = Vec3(10.0f);
+    scene.lights.push_back(sun);
+    scene.notes.push_back("no lights in the file: a sun of 10 W/m^2 from above and the front is assumed");
+}
+
+void addDefaultCamera(Scene& scene)
+{
+    const Vec3 extent = scene.bounds.extent(), centre = scene.bounds.centre();
+    const float largest = std::max({extent.x, extent.y, extent.z});
+
+    // From the front, right and above; along the thin axis where the scene is a sheet, a little aside so that no axis is hit exactly.
+    Vec3 toCamera(0.5f, 0.35f, 1.0f);
+    if (extent.y < 0.01f * largest) toCamera = Vec3(0.2f, 1.0f, 0.5f);
+    else if (extent.x < 0.01f * largest) toCamera = Vec3(1.0f, 0.25f, 0.2f);
+    toCamera = normalized(toCamera);
+
+    // The box's enclosing sphere touches the sides of the field of view.
+    Camera camera;
+    camera.name = "default camera";
+    camera.verticalFov = 0.8f;
+    const float radius = 0.5f * std::sqrt(glm::dot(extent, extent));
+    const float distance = 1.02f * radius / float(sinCos(0.5 * double(camera.verticalFov)).sin);
+    camera.position = centre + distance * toCamera;
+    camera.forward = -toCamera;
+    camera.up = orthogonalUp(Vec3(0.0f, 1.0f, 0.0f), camera.forward);
+    camera.nearPlane = 0.01f * distance;
+    scene.cameras.push_back(camera);
+    scene.notes.push_back("no camera in the file: one that frames the scene from the front, right and above is assumed");
+}
+
+}  // namespace lrsm

@@ -1,0 +1,189 @@
+#include "core/base/elementary.h"
+#include "core/scene/gltf_accessor.h"
+#include "core/scene/gltf_read.h"
+
+namespace lrsm::gltf {
+namespace {
+
+Property propertyNamed(const std::string& path)
+{
+    if (path == "translation") return Property::translation;
+    if (path == "rotation") return Property::rotation;
+    if (path == "scale") return Property::scale;
+    return Property::weights;
+}
+
+Interpolation interpolationOf(const Document& document, const std::string& name, const std::string& path)
+{
+    if (name.empty() || name == "LINEAR") return Interpolation::linear;
+    if (name == "STEP") return Interpolation::step;
+    if (name == "CUBICSPLINE") return Interpolation::cubicSpline;
+    document.fail(path, "must be STEP, LINEAR or CUBICSPLINE");
+}
+
+/// Floats a keyframe holds: 3, 4, or one for each morph target of the node's mesh.
+std::size_t widthOf(const Document& document, Property property, int node)
+{
+    if (property != Property::weights) return property == Property::rotation ? 4 : 3;
+    const int mesh = document.model.nodes[std::size_t(node)].mesh;
+    if (mesh < 0 || document.model.meshes[std::size_t(mesh)].primitives.empty()) return 0;
+    return document.model.meshes[std::size_t(mesh)].primitives[0].targets.size();
+}
+
+Channel readChannel(const Document& document, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source,
+                    const std::string& animationPath, const std::string& path)
+{
+    if (source.sampler < 0 || std::size_t(source.sampler) >= animation.samplers.size())
+        document.fail(path + ".sampler", "points to nothing: there are " + countOf(animation.samplers.size(), "sampler"));
+    const tinygltf::AnimationSampler& sampler = animation.samplers[std::size_t(source.sampler)];
+    const std::string samplerPath = at(animationPath + ".samplers", std::size_t(source.sampler));
+
+    Channel channel;
+    channel.node = source.target_node;
+    channel.property = propertyNamed(source.target_path);
+    channel.interpolation = interpolationOf(document, sampler.interpolation, samplerPath + ".interpolation");
+    const std::size_t width = widthOf(document, channel.property, channel.node);
+    if (width == 0) document.fail(path + ".target", "node " + std::to_string(channel.node) + " has no morph targets");
+    if (channel.property != Property::weights && !document.model.nodes[std::size_t(channel.node)].matrix.empty())
+        document.fail(path + ".target", "node " + std::to_string(channel.node) + " has a matrix and cannot be animated");
+    channel.width = int(width);
+
+    requireFormat(document, sampler.input, "SCALAR f", samplerPath + ".input");
+    channel.times = readFloats(document, sampler.input);
+    for (std::size_t i = 1; i < channel.times.size(); ++i)
+        if (!(channel.times[i] > channel.times[i - 1]))
+            document.fail(samplerPath + ".input", "times must increase, element " + std::to_string(i) + " does not");
+
+    requireFormat(document, sampler.output,
+                  channel.property == Property::rotation  ? "VEC4 f ns8 nu8 ns16 nu16"
+                  : channel.property == Property::weights ? "SCALAR f ns8 nu8 ns16 nu16"
+                                                          : "VEC3 f",
+                  samplerPath + ".output");
+    channel.values = readFloats(document, sampler.output);
+    const std::size_t expected = channel.times.size() * width * (channel.interpolation == Interpolation::cubicSpline ? 3 : 1);
+    if (channel.values.size() != expected)
+        document.fail(samplerPath + ".output", "holds " + std::to_string(channel.values.size()) + " numbers, the keyframes need " + std::to_string(expected));
+    return channel;
+}
+
+DMat4 matrixOf(const std::vector<double>& values)
+{
+    DMat4 matrix(1.0);
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = values[std::size_t(i)];
+    return matrix;
+}
+
+Node readNode(const Document& document, std::size_t i)
+{
+    const tinygltf::Node& source = document.model.nodes[i];
+    Node node;
+    node.name = source.name.empty() ? "node " + std::to_string(i) : source.name;
+    node.children = source.children;
+    node.mesh = source.mesh;
+    node.skin = source.skin;
+    node.camera = source.camera;
+    node.weights.assign(source.weights.begin(), source.weights.end());
+    node.hasMatrix = !source.matrix.empty();
+    if (node.hasMatrix) node.matrix = matrixOf(source.matrix);
+    for (int c = 0; c < 3; ++c) {
+        if (!source.translation.empty()) node.translation[c] = source.translation[std::size_t(c)];
+        if (!source.scale.empty()) node.scale[c] = source.scale[std::size_t(c)];
+    }
+    if (!source.rotation.empty()) {
+        for (int c = 0; c < 4; ++c) node.rotation[c] = source.rotation[std::size_t(c)];
+        const double length = std::sqrt(glm::dot(node.rotation, node.rotation));
+        if (!(length > 1e-12)) document.fail(at("nodes", i) + ".rotation", "is no rotation");
+        node.rotation /= length;
+    }
+    const Json& json = document.json["nodes"][i];
+    if (const auto extensions = json.find("extensions"); extensions != json.end() && extensions->contains("KHR_lights_punctual"))
+        node.light = (*extensions)["KHR_lights_punctual"]["light"].get<int>();
+    return node;
+}
+
+/// `roots` and all below them, each after its parent.
+std::vector<int> parentsFirst(const std::vector<Node>& nodes, const std::vector<int>& roots)
+{
+    std::vector<bool> seen(nodes.size(), false);
+    std::vector<int> order, open(roots.rbegin(), roots.rend());
+    while (!open.empty()) {
+        const int node = open.back();
+        open.pop_back();
+        if (seen[std::size_t(node)]) continue;
+        seen[std::size_t(node)] = true;
+        order.push_back(node);
+        const std::vector<int>& children = nodes[std::size_t(node)].children;
+        open.insert(open.end(), children.rbegin(), children.rend());
+    }
+    return order;
+}
+
+}  // namespace
+
+void readNodes(const Document& document, Asset& asset)
+{
+    for (std::size_t i = 0; i < document.model.nodes.size(); ++i) asset.nodes.push_back(readNode(document, i));
+    for (std::size_t i = 0; i < asset.nodes.size(); ++i)
+        for (const int child : asset.nodes[i].children) asset.nodes[std::size_t(child)].parent = int(i);
+
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < asset.nodes.size(); ++i)
+        if (asset.nodes[i].parent < 0) roots.push_back(int(i));
+    asset.parentsFirst = parentsFirst(asset.nodes, roots);
+
+    // The scene the file names, else its first, else (a library of nodes) everything.
+    const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
+    const int scene = document.json.contains("scene") ? document.json["scene"].get<int>() : 0;
+    asset.sceneNodes = scenes.empty() ? asset.parentsFirst : parentsFirst(asset.nodes, scenes[std::size_t(scene)].nodes);
+    if (scenes.size() > 1) asset.notes.push_back("scene " + std::to_string(scene) + " of " + std::to_string(scenes.size()) + " is shown");
+}
+
+void readSkins(const Document& document, Asset& asset)
+{
+    for (const tinygltf::Skin& source : document.model.skins) {
+        Skin skin;
+        skin.joints = source.joints;
+        skin.inverseBind.assign(skin.joints.size(), DMat4(1.0));
+        if (source.inverseBindMatrices >= 0) {
+            const std::vector<float> values = readFloats(document, source.inverseBindMatrices);
+            for (std::size_t j = 0; j < skin.joints.size(); ++j)
+                for (std::size_t c = 0; c < 16; ++c) skin.inverseBind[j][int(c / 4)][int(c % 4)] = double(values[16 * j + c]);
+        }
+        asset.skins.push_back(std::move(skin));
+    }
+    for (std::size_t n = 0; n < asset.nodes.size(); ++n) {
+        const Node& node = asset.nodes[n];
+        if (node.skin < 0 || node.mesh < 0) continue;
+        const std::size_t joints = asset.skins[std::size_t(node.skin)].joints.size();
+        for (const Primitive& primitive : asset.meshes[std::size_t(node.mesh)].primitives)
+            for (const Influences& influences : primitive.influences)
+                for (std::size_t v = 0; v < influences.joints.size(); ++v)
+                    for (int k = 0; k < 4; ++k)
+                        if (influences.weights[v][k] != 0.0f && influences.joints[v][std::size_t(k)] >= joints)
+                            document.fail(at("nodes", n) + ".skin", "vertex " + std::to_string(v) + " uses joint " +
+                                                                        std::to_string(influences.joints[v][std::size_t(k)]) + " of " + std::to_string(joints));
+    }
+}
+
+void readAnimations(const Document& document, Asset& asset)
+{
+    std::size_t ignored = 0;
+    for (std::size_t a = 0; a < document.model.animations.size(); ++a) {
+        const tinygltf::Animation& source = document.model.animations[a];
+        const std::string path = at("animations", a);
+        Animation animation{source.name.empty() ? "animation " + std::to_string(a) : source.name, {}};
+        for (std::size_t c = 0; c < source.channels.size(); ++c) {
+            const std::string& property = source.channels[c].target_path;
+            const bool known = property == "translation" || property == "rotation" || property == "scale" || property == "weights";
+            if (!known || source.channels[c].target_node < 0) {
+                ++ignored;
+                continue;
+            }
+            animation.channels.push_back(readChannel(document, source, source.channels[c], path, at(path + ".channels", c)));
+        }
+        asset.animations.push_back(std::move(animation));
+    }
+    if (ignored > 0) asset.notes.push_back(countOf(ignored, "animation channel") + " without a node or of unknown path ignored");
+}
+
+}  // namespace lrsm::gltf
