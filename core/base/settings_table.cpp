@@ -118,10 +118,13 @@ void setFromText(const SettingRow& row, Settings& settings, const std::string& t
 
 const SettingRow& findRow(const std::string& key, const std::string& place)
 {
-    const SettingRow* nearest = nullptr;
-    std::size_t nearestDistance = std::max<std::size_t>(3, key.size() / 2);
-    for (const SettingRow& row : settingRows()) {
+    for (const SettingRow& row : settingRows())
         if (row.key == key) return row;
+
+    const SettingRow* nearest = nullptr;
+    std::size_t nearestDistance = std::max<std::size_t>(3, std::min<std::size_t>(key.size(), 64) / 2);
+    for (const SettingRow& row : settingRows()) {
+        if (key.size() > 64) break;  // no misspelling
         // An abbreviation ("filter" for irradiance_filter) is as near as a misspelling.
         const bool part = key.size() >= 4 && row.key.find(key) != std::string_view::npos;
         const std::size_t distance = part ? 1 : editDistance(key, std::string(row.key));
