@@ -1,16 +1,12 @@
 #include "core/base/settings_table.h"
 
 #include "core/base/check.h"
+#include "core/base/file.h"
 #include "core/base/settings_rows.h"
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace lrsm {
 
@@ -61,16 +57,6 @@ const char* kindName(SettingKind kind)
     return kind == SettingKind::flag ? "true or false" : kind == SettingKind::choice ? "a string" : "a number";
 }
 
-std::string readText(const std::string& path)
-{
-    // A directory opens as a stream on Linux and only fails on reading.
-    if (std::error_code error; std::filesystem::is_directory(path, error)) throw InputError(path, "is a folder, not a settings file");
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    if (!file || !(text << file.rdbuf())) throw InputError(path, file.is_open() ? "is empty or cannot be read" : std::strerror(errno));
-    return text.str();
-}
-
 }  // namespace
 
 Json settingsToJson(const Settings& settings)
@@ -101,7 +87,7 @@ void applySettingsFile(Settings& settings, const std::string& path)
 {
     Json object;
     try {
-        object = Json::parse(readText(path));
+        object = Json::parse(readFile(path));
     } catch (const Json::exception& error) {
         // The library's text names line and column; its prefix is of no use to a reader.
         std::string why = error.what();

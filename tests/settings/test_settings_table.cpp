@@ -206,7 +206,7 @@ TEST_CASE("settings: a file that is not there, not JSON, empty or a folder is on
     }
     Settings s;
     CHECK(contains(refusal([&] { applySettingsFile(s, folder.string()); }), "is a folder"));
-    CHECK(contains(refusal([&] { applySettingsFile(s, (folder / "none.json").string()); }), "No such file"));
+    CHECK(contains(refusal([&] { applySettingsFile(s, (folder / "none.json").string()); }), "no such file"));
     std::filesystem::remove_all(folder);
 }
 
