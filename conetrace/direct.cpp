@@ -69,11 +69,11 @@ struct Shadowing {
     }
 };
 
-Vec3 shade(const Scene& scene, const Surface& surface, const Vec3& toEye, bool specular, const Shadowing& shadowing)
+Vec3 shade(const std::vector<LightSampler>& lights, const Surface& surface, const Vec3& toEye, bool specular, const Shadowing& shadowing)
 {
     Vec3 radiance(0.0f);
-    for (std::size_t k = 0; k < scene.lights.size(); ++k) {
-        const LightSample sample = sampleLight(scene.lights[k], surface.position);
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        const LightSample sample = lights[k](surface.position);
         const float nDotL = glm::dot(surface.normal, sample.toLight);
         if (sample.irradiance == Vec3(0.0f) || nDotL <= 0.0f || glm::dot(surface.geometricNormal, sample.toLight) <= 0.0f) continue;
         const float visibility = shadowing.visibility(k, surface, sample);
@@ -128,13 +128,15 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
     const Shadowing shadowing{rsms, opacity, settings, static_cast<float>(tangent(halfAperture))};
 
+    const std::vector<LightSampler> lights(scene.lights.begin(), scene.lights.end());
+
     DirectResult result{Image<Vec3>(gbuffer.width, gbuffer.height)};
     parallelFor(result.radiance.texels.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (!gbuffer.covered(i)) continue;
             const Surface surface = surfaceAt(gbuffer, i);
             const Vec3 toEye = directionToEye(camera, surface.position);
-            result.radiance.texels[i] = shade(scene, surface, toEye, needs.specular, shadowing);
+            result.radiance.texels[i] = shade(lights, surface, toEye, needs.specular, shadowing);
         }
     });
     return result;

@@ -15,14 +15,14 @@ struct ShadedTexel {
 };
 
 /// Reflected radiance of a diffuse surface lit by the light alone: rho L_d <n.l> / pi.
-ShadedTexel shadeTexel(const Scene& scene, const Light& light, const LightProjection& projection, const SurfaceHit& hit)
+ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const LightProjection& projection, const SurfaceHit& hit)
 {
     const Vec3 toLight = directionToLight(projection, positionOf(scene, hit));
     const Surface surface = evaluateSurface(scene, hit, toLight);
     const float nDotL = glm::clamp(glm::dot(surface.normal, toLight), 0.0f, 1.0f);
 
     ShadedTexel shaded;
-    shaded.texel.radiance = surface.albedo * sampleLight(light, surface.position).irradiance * (nDotL / kPi);
+    shaded.texel.radiance = surface.albedo * light(surface.position).irradiance * (nDotL / kPi);
     shaded.texel.coverage = 1.0f;
     shaded.texel.normal = surface.normal;
     shaded.texel.nDotL = nDotL;
@@ -49,6 +49,7 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
     rsm.texels = Image<RsmTexel>(n, n);
     rsm.depthLinear = Image<float>(n, n, 1.0f);
 
+    const LightSampler sampler(light);
     constexpr std::size_t kChunk = 8192;
     const std::size_t count = rsm.texels.texels.size();
     std::vector<ConversionCounts> counts((count + kChunk - 1) / kChunk);
@@ -56,7 +57,7 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
         for (std::size_t i = begin; i < end; ++i) {
             const Fragment& fragment = drawn.fragments.texels[i];
             if (fragment.triangle == kNoTriangle) continue;
-            ShadedTexel shaded = shadeTexel(scene, light, rsm.projection, hitOf(drawn.firstTriangle, fragment));
+            ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hitOf(drawn.firstTriangle, fragment));
             if (settings.storage == Storage::gpu) toHalf(shaded.texel, settings.halfRounding, counts[begin / kChunk]);
             rsm.texels.texels[i] = shaded.texel;
             rsm.depthLinear.texels[i] = shaded.depth;

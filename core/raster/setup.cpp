@@ -167,17 +167,6 @@ ScreenVertex projectVertex(const Viewport& viewport, double x, double y, double 
     return v;
 }
 
-PixelBounds pixelBounds(const SetupTriangle& t, const Viewport& viewport)
-{
-    // First centre at or right of the minimum, last at or left of the maximum; centres are at +0.5.
-    const auto [xMin, xMax] = std::minmax({t.x[0], t.x[1], t.x[2]});
-    const auto [yMin, yMax] = std::minmax({t.y[0], t.y[1], t.y[2]});
-    constexpr int kHalf = kSubPixels / 2, kShift = 8;
-    static_assert(1 << kShift == kSubPixels);
-    return {std::max(0, (xMin + kHalf - 1) >> kShift), std::max(0, (yMin + kHalf - 1) >> kShift),
-            std::min(viewport.width - 1, (xMax - kHalf) >> kShift), std::min(viewport.height - 1, (yMax - kHalf) >> kShift)};
-}
-
 Chunk setUpChunk(const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::size_t begin,
                  std::size_t end)
 {

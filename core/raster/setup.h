@@ -3,6 +3,7 @@
 #include "core/raster/clip.h"
 #include "core/raster/rasterize.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -51,7 +52,15 @@ struct PixelBounds {
     int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
     bool empty() const { return x1 < x0 || y1 < y0; }
 };
-PixelBounds pixelBounds(const SetupTriangle& triangle, const Viewport& viewport);
+inline PixelBounds pixelBounds(const SetupTriangle& t, const Viewport& viewport)
+{
+    // First centre at or right of the minimum, last at or left of the maximum; centres are at +0.5.
+    constexpr int kHalf = kSubPixels / 2, kShift = 8;
+    static_assert(1 << kShift == kSubPixels);
+    const auto first = [](const std::array<std::int32_t, 3>& v) { return (std::min(std::min(v[0], v[1]), v[2]) + kHalf - 1) >> kShift; };
+    const auto last = [](const std::array<std::int32_t, 3>& v) { return (std::max(std::max(v[0], v[1]), v[2]) - kHalf) >> kShift; };
+    return {std::max(0, first(t.x)), std::max(0, first(t.y)), std::min(viewport.width - 1, last(t.x)), std::min(viewport.height - 1, last(t.y))};
+}
 
 /// Edge i lies opposite corner i. value(x, y) >= 0 inside (exact, in 1/256 pixel squared), plus `bias` for the top-left rule.
 struct Edge {

@@ -16,10 +16,8 @@ int cubeFaceOf(const Vec3& d)
 }
 
 /// KHR_lights_punctual's cone: squared linear ramp in the cosine from the outer to the inner angle.
-float coneFalloff(const Light& light, float cosFromAxis)
+float coneFalloff(float cosInner, float cosOuter, float cosFromAxis)
 {
-    const auto cosInner = static_cast<float>(sinCos(light.innerConeAngle).cos);
-    const auto cosOuter = static_cast<float>(sinCos(light.outerConeAngle).cos);
     const float ramp = glm::clamp((cosFromAxis - cosOuter) / std::max(0.001f, cosInner - cosOuter), 0.0f, 1.0f);
     return ramp * ramp;
 }
@@ -35,19 +33,33 @@ float rangeWindow(float distance, float range)
 
 LightSample sampleLight(const Light& light, const Vec3& pWorld)
 {
-    if (light.type == LightType::directional) return {-light.direction, kInfinity, light.intensity};
+    return LightSampler(light)(pWorld);
+}
 
-    const Vec3 fromLight = pWorld - light.position;
+LightSampler::LightSampler(const Light& light) : light_(light)
+{
+    if (light.type == LightType::spot) {
+        cosInner_ = static_cast<float>(sinCos(light.innerConeAngle).cos);
+        cosOuter_ = static_cast<float>(sinCos(light.outerConeAngle).cos);
+    }
+    face_ = cubeFaceOf(light.direction);
+}
+
+LightSample LightSampler::operator()(const Vec3& pWorld) const
+{
+    if (light_.type == LightType::directional) return {-light_.direction, kInfinity, light_.intensity};
+
+    const Vec3 fromLight = pWorld - light_.position;
     const float distance = glm::length(fromLight);
-    if (!(distance > 0.0f)) return {-light.direction, 0.0f, Vec3(0.0f)};  // at the light itself: no direction, no light
+    if (!(distance > 0.0f)) return {-light_.direction, 0.0f, Vec3(0.0f)};  // at the light itself: no direction, no light
     const Vec3 direction = fromLight / distance;
 
-    float attenuation = rangeWindow(distance, light.range) / (distance * distance);
-    if (light.type == LightType::spot)
-        attenuation *= coneFalloff(light, glm::dot(direction, light.direction));
-    else if (cubeFaceOf(direction) != cubeFaceOf(light.direction))
+    float attenuation = rangeWindow(distance, light_.range) / (distance * distance);
+    if (light_.type == LightType::spot)
+        attenuation *= coneFalloff(cosInner_, cosOuter_, glm::dot(direction, light_.direction));
+    else if (cubeFaceOf(direction) != face_)
         attenuation = 0.0f;
-    return {-direction, distance, light.intensity * attenuation};
+    return {-direction, distance, light_.intensity * attenuation};
 }
 
 std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name)

@@ -16,6 +16,18 @@ struct LightSample {
 /// faces belongs to exactly one). Directional: the intensity.
 LightSample sampleLight(const Light& light, const Vec3& pWorld);
 
+/// The same, bit for bit, with what depends on the light alone worked out once: for loops over many points.
+class LightSampler {
+  public:
+    explicit LightSampler(const Light& light);
+    LightSample operator()(const Vec3& pWorld) const;
+
+  private:
+    Light light_;
+    float cosInner_ = 1.0f, cosOuter_ = 0.0f;
+    int face_ = 0;
+};
+
 /// A point light as six cube faces; together they are exactly the point light.
 std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name);
 
