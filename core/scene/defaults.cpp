@@ -18,16 +18,22 @@ Vec3 orthogonalUp(const Vec3& up, const Vec3& axis)
 
 }  // namespace
 
+Vec3 uprightFor(const Vec3& direction)
+{
+    const Vec3 up = std::abs(direction.y) < 0.999f ? Vec3(0.0f, 1.0f, 0.0f) : Vec3(0.0f, 0.0f, -1.0f);
+    return orthogonalUp(up, direction);
+}
+
 void addDefaultLight(Scene& scene)
 {
     Light sun;
     sun.name = "default sun";
     sun.type = LightType::directional;
     sun.direction = normalized(Vec3(-0.4f, -1.0f, -0.55f));
-    sun.up = orthogonalUp(Vec3(0.0f, 1.0f, 0.0f), sun.direction);
+    sun.up = uprightFor(sun.direction);
     sun.intensity = Vec3(10.0f);
     scene.lights.push_back(sun);
-    scene.notes.push_back("no lights in the file: a sun of 10 W/m^2 from above and the front is assumed");
+    scene.notes.emplace_back(kDefaultLightNote);
 }
 
 void addDefaultCamera(Scene& scene)
@@ -49,10 +55,10 @@ void addDefaultCamera(Scene& scene)
     const float distance = 1.02f * radius / float(sinCos(0.5 * double(camera.verticalFov)).sin);
     camera.position = centre + distance * toCamera;
     camera.forward = -toCamera;
-    camera.up = orthogonalUp(Vec3(0.0f, 1.0f, 0.0f), camera.forward);
+    camera.up = uprightFor(camera.forward);
     camera.nearPlane = 0.01f * distance;
     scene.cameras.push_back(camera);
-    scene.notes.push_back("no camera in the file: one that frames the scene from the front, right and above is assumed");
+    scene.notes.emplace_back(kDefaultCameraNote);
 }
 
 }  // namespace lrsm

@@ -2,7 +2,18 @@
 
 #include "core/scene/scene.h"
 
+#include <string_view>
+
 namespace lrsm {
+
+/// The notes that the two functions below leave.
+inline constexpr std::string_view kDefaultLightNote = "no lights in the file: a sun of 10 W/m^2 from above and the front is assumed";
+inline constexpr std::string_view kDefaultCameraNote =
+    "no camera in the file: one that frames the scene from the front, right and above is assumed";
+
+/// The `up` of a light that travels along `direction` (unit): world up made orthogonal to it, or -z for a light that shines
+/// (nearly) straight up or down. Unit.
+Vec3 uprightFor(const Vec3& direction);
 
 /// A white sun of 10 W/m^2 from above and the front, at an angle to every axis. Says so in the notes.
 void addDefaultLight(Scene& scene);

@@ -1,0 +1,79 @@
+#include "core/scene/load_scene.h"
+
+#include "core/base/check.h"
+#include "core/scene/builtin_scenes.h"
+#include "core/scene/defaults.h"
+#include "core/scene/view_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+namespace lrsm {
+namespace {
+
+std::string lowerCaseExtension(const std::string& path)
+{
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return extension;
+}
+
+[[noreturn]] void failUnknown(const std::string& place)
+{
+    std::string names;
+    for (const BuiltinSceneInfo& info : builtinScenes()) names += (names.empty() ? "" : ", ") + info.name;
+    throw InputError(place, "there is no such file, and the built-in scenes are: " + names);
+}
+
+/// A built-in or a glTF file; `place` is where its name was given.
+Scene loadPlain(const std::string& scene, const SceneOptions& options, const std::string& place)
+{
+    if (std::optional<Scene> builtin = makeBuiltinScene(scene)) return std::move(*builtin);
+    std::error_code error;
+    if (scene.empty() || !std::filesystem::exists(scene, error)) failUnknown(place);
+    return loadGltf(scene, {options.time, options.animation});
+}
+
+/// Beside the view file; else in the folder above, where views have a folder of their own among the scenes.
+std::string sceneOfView(const std::string& scene, const std::string& viewPath)
+{
+    if (makeBuiltinScene(scene)) return scene;
+    const std::filesystem::path folder = std::filesystem::path(viewPath).parent_path();
+    const std::filesystem::path beside = folder / scene, above = folder / ".." / scene;
+    std::error_code error;
+    return (!std::filesystem::exists(beside, error) && std::filesystem::exists(above, error) ? above : beside).string();
+}
+
+Scene loadWithView(const std::string& scene, const std::string& viewPath, const SceneOptions& options)
+{
+    View view = readViewFile(viewPath);
+    std::string target = scene;
+    if (target.empty()) {
+        if (view.scene.empty()) throw InputError(viewPath + ": scene", "is missing");
+        target = sceneOfView(view.scene, viewPath);
+    }
+    if (lowerCaseExtension(target) == ".json") throw InputError(viewPath + ": scene", "must not be a view file itself");
+
+    Scene result = loadPlain(target, options, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
+    if (view.camera) result.cameras = {*view.camera};
+    if (view.lights) result.lights = std::move(*view.lights);
+    // What was said about defaults no longer holds where the view replaced them.
+    std::erase_if(result.notes, [&](const std::string& note) {
+        return (view.camera && note == kDefaultCameraNote) || (view.lights && note == kDefaultLightNote);
+    });
+    result.notes.insert(result.notes.end(), view.notes.begin(), view.notes.end());
+    return result;
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& scene, const SceneOptions& options)
+{
+    if (!options.view.empty()) return loadWithView(scene, options.view, options);
+    if (lowerCaseExtension(scene) == ".json") return loadWithView("", scene, options);
+    return loadPlain(scene, options, "scene \"" + scene + "\"");
+}
+
+}  // namespace lrsm
