@@ -1,0 +1,153 @@
+#include "reference/embree_scene.h"
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <string>
+#include <vector>
+
+namespace lrsm {
+
+struct EmbreeScene::GeometryData {
+    const Scene* scene = nullptr;
+    std::uint32_t mesh = 0;
+    bool singleSided = false;
+    bool alphaMask = false;
+
+    static void filter(const RTCFilterFunctionNArguments* arguments);
+};
+
+namespace {
+
+[[noreturn]] void fail(RTCDevice device, const std::string& what)
+{
+    const RTCError code = rtcGetDeviceError(device);
+    throw MachineError("Embree", what + " (error " + std::to_string(int(code)) + ")");
+}
+
+RTCRay embreeRay(const Ray& ray)
+{
+    RTCRay result{};
+    result.org_x = ray.origin.x;
+    result.org_y = ray.origin.y;
+    result.org_z = ray.origin.z;
+    result.dir_x = ray.direction.x;
+    result.dir_y = ray.direction.y;
+    result.dir_z = ray.direction.z;
+    result.tnear = ray.tNear;
+    result.tfar = ray.tFar;
+    result.mask = ~0u;
+    result.id = static_cast<unsigned>(ray.kind);  // Embree hands it through to the filter
+    return result;
+}
+
+}  // namespace
+
+/// Called for hits on single-sided or alpha-masked geometry only; clears `valid` where the ray goes on. Our rays come one by one.
+void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* arguments)
+{
+    if (arguments->valid[0] != -1) return;
+    const auto& data = *static_cast<const GeometryData*>(arguments->geometryUserPtr);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+
+    if (data.singleSided) {
+        const bool front = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z < 0.0f;
+        const auto kind = static_cast<RayKind>(ray.id);
+        // A ray towards the light that meets a front has met a face whose back is turned to the light.
+        if ((kind == RayKind::eye && !front) || (kind == RayKind::light && front)) {
+            arguments->valid[0] = 0;
+            return;
+        }
+    }
+    if (data.alphaMask && !passesAlphaTest(*data.scene, {data.mesh, hit.primID, hit.u, hit.v})) arguments->valid[0] = 0;
+}
+
+EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new GeometryData[scene.meshes.size()])
+{
+    const Vec3 largest = glm::max(glm::abs(scene.bounds.min), glm::abs(scene.bounds.max));
+    floor_ = scene.bounds.empty() ? 0.0f : 0x1p-22f * std::max({largest.x, largest.y, largest.z});
+
+    // One building thread: a parallel build may order the triangles of a leaf differently, and with them which of two coincident
+    // triangles is hit. (The device's own `threads=1` would hold back all of oneTBB for as long as the device lives.)
+    const ThreadLimit oneBuilder(1);
+    device_.reset(rtcNewDevice("isa=avx2"));
+    if (!device_) fail(nullptr, "cannot be started with isa=avx2");
+    embree_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(embree_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_MEDIUM);
+
+    for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+        const Mesh& mesh = scene.meshes[m];
+        const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+        data_[m] = {&scene, m, !material.doubleSided, material.alphaMask};
+
+        RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        // Copies, not shared buffers: Embree reads 16 bytes at the last vertex, beyond the end of ours.
+        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size());
+        void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(mesh.triangles[0]), mesh.triangles.size());
+        if ((!vertices && !mesh.positions.empty()) || (!indices && !mesh.triangles.empty())) fail(device_.get(), "no memory for the triangles");
+        std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<Vec3*>(vertices));
+        std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(indices));
+        if (data_[m].singleSided || data_[m].alphaMask) {
+            rtcSetGeometryUserData(geometry, &data_[m]);
+            rtcSetGeometryIntersectFilterFunction(geometry, &GeometryData::filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, &GeometryData::filter);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(embree_.get(), geometry, m);
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(embree_.get());
+    if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) fail(device_.get(), "cannot build the scene's BVH");
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+void EmbreeScene::Release::operator()(RTCDeviceTy* device) const
+{
+    rtcReleaseDevice(device);
+}
+
+void EmbreeScene::Release::operator()(RTCSceneTy* scene) const
+{
+    rtcReleaseScene(scene);
+}
+
+std::optional<RayHit> EmbreeScene::closestHit(const Ray& ray) const
+{
+    RTCRayHit query{embreeRay(ray), {}};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(embree_.get(), &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(embree_.get(), &context, &query);
+#endif
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const RTCHit& hit = query.hit;
+    const bool front = hit.Ng_x * ray.direction.x + hit.Ng_y * ray.direction.y + hit.Ng_z * ray.direction.z < 0.0f;
+    return RayHit{{hit.geomID, hit.primID, hit.u, hit.v}, query.ray.tfar, front};
+}
+
+bool EmbreeScene::occluded(const Ray& ray) const
+{
+    RTCRay query = embreeRay(ray);
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(embree_.get(), &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_.get(), &context, &query);
+#endif
+    return query.tfar < 0.0f;  // set to -infinity by a hit
+}
+
+}  // namespace lrsm

@@ -1,0 +1,123 @@
+#pragma once
+
+#include "core/base/image.h"
+#include "core/scene/camera.h"
+#include "reference/embree_scene.h"
+#include "reference/sample_sums.h"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Ground truth for the picture: a path tracer that shares scene, materials, lights and pixel rays with the real-time passes, and no
+/// visibility, filtering or gathering code.
+namespace lrsm {
+
+enum class Transport {
+    single,  ///< what LRSM sets out to compute: direct light and one bounce off diffuse secondary surfaces
+    full     ///< any number of bounces (Russian roulette), every BRDF at every vertex
+};
+
+struct ReferenceSettings {
+    Transport transport = Transport::single;
+    int width = 1280, height = 720;
+    int blockBits = 4;                   ///< log2 of the samples stratified against each other, 0..12; the spread is taken over blocks
+    float specularApertureDegrees = 0.0f;  ///< full aperture of the cone layer, (0, 170]; 0: the cone layer is left out
+    std::uint64_t seed = 0;
+    bool operator==(const ReferenceSettings&) const = default;
+};
+/// Throws InputError naming field, value and range.
+void validate(const ReferenceSettings& settings);
+
+/// Rays of each kind, for the ray budget.
+struct RayCounts {
+    std::uint64_t eye = 0, bounce = 0, light = 0;
+    std::uint64_t total() const { return eye + bounce + light; }
+    bool operator==(const RayCounts&) const = default;
+};
+
+/// What the eye sees: one ray through each pixel's centre, no antialiasing, as in the G-buffer.
+struct PrimaryHits {
+    Image<Surface> surface;            ///< as far as `covered`
+    Image<std::uint8_t> covered;
+    Image<Vec3> toEye;                 ///< unit
+    Image<float> depth;                ///< metres along the viewing axis; 0 where empty
+    Image<Vec3> direct;                ///< radiance towards the eye: every light, one shadow ray each, diffuse and specular
+};
+
+/// What has been rendered so far of one sample range. The state of a chunk of pixels is how many of the range's blocks it has seen.
+struct ReferenceState {
+    SampleRange target;
+    SampleSums sums;                        ///< of the target range; `ranges` is filled in when finished
+    std::vector<std::uint32_t> chunkBlocks;
+    RayCounts rays;
+    std::uint64_t invalidSamples = 0;       ///< NaN or infinite contributions, counted as 0
+    double seconds = 0.0;                   ///< spent tracing
+    bool finished() const { return !sums.ranges.empty(); }
+};
+
+/// Means with the variance of each mean. Layer names as in the output of `lrsm render`.
+struct ReferenceFrame {
+    Image<Vec3> direct;             ///< W/(m^2 sr)
+    Image<Vec3> irradiance;         ///< indirect, before the receiver's albedo: integral of L <n.w> dw about the shading normal, W/m^2
+    Image<Vec3> indirectDiffuse;    ///< albedo * irradiance / pi
+    Image<Vec3> indirectSpecular;   ///< the material's own lobe: integral of L f_s <n.w> dw
+    Image<Vec3> specularCone;       ///< mean radiance over the cone's solid angle about the mirror direction; empty unless asked for
+    Image<Vec3> combined;           ///< direct + indirectDiffuse + indirectSpecular
+    Image<float> opacity;           ///< fraction of the diffuse rays that hit anything
+    Image<Vec3> irradianceVariance, indirectDiffuseVariance, indirectSpecularVariance, specularConeVariance, combinedVariance;
+    Image<float> opacityVariance;   ///< all variances: of the mean; empty images with fewer than two complete blocks
+    std::uint64_t samples = 0;
+};
+
+/// A ray of the last pass, for timing a bare loop.
+struct RecordedRay {
+    Ray ray;
+    bool shadow = false;
+};
+
+class PathTracer {
+  public:
+    /// Builds the BVH and shoots the primary rays. `scene` must outlive the tracer.
+    PathTracer(const Scene& scene, const Camera& camera, const ReferenceSettings& settings);
+
+    const PrimaryHits& primary() const { return primary_; }
+    const EmbreeScene& embree() const { return embree_; }
+    const ReferenceSettings& settings() const { return settings_; }
+    RayCounts primaryRays() const { return primaryRays_; }
+    /// Values a pixel in the sums: irradiance and opacity, and with a specular part the lobe and the cone.
+    int channels() const;
+
+    ReferenceState start(SampleRange range) const;
+    /// Renders until the range is done (true), `stop` is set, or the deadline has passed; what a started chunk does is kept.
+    bool advance(ReferenceState& state, std::chrono::steady_clock::time_point deadline, const std::atomic<bool>* stop = nullptr) const;
+    /// Fraction of the target range done, [0, 1].
+    static double progress(const ReferenceState& state);
+    /// The picture of complete sums.
+    ReferenceFrame resolve(const SampleSums& sums) const;
+
+    /// The rays that the first `limit` pixels' first block shoots, in order.
+    std::vector<RecordedRay> recordRays(std::size_t limitPixels) const;
+
+  private:
+    void shootPrimary(const Camera& camera);
+
+    const Scene& scene_;
+    ReferenceSettings settings_;
+    EmbreeScene embree_;
+    PrimaryHits primary_;
+    RayCounts primaryRays_;
+    bool specular_ = false;
+    double unit_ = 1.0;
+};
+
+/// Power of two near the light that the scene's lights throw, so that fixed-point sums keep their relative precision at any exposure.
+double sampleUnit(const Scene& scene);
+
+/// All samples of [0, samples), for tests and tools.
+ReferenceFrame renderReference(const Scene& scene, const Camera& camera, const ReferenceSettings& settings, std::uint64_t samples);
+
+}  // namespace lrsm
