@@ -1,6 +1,5 @@
 #include "reference/integrator.h"
 
-#include "core/scene/light.h"
 #include "reference/directions.h"
 
 namespace lrsm {
@@ -60,8 +59,8 @@ Ray rayFrom(const Tracer& tracer, const Surface& surface, const Vec3& direction,
 Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, Lobes lobes)
 {
     Vec3 sum(0.0f);
-    for (const Light& light : tracer.scene().lights) {
-        const LightSample sample = sampleLight(light, surface.position);
+    for (const LightSampler& light : tracer.lights()) {
+        const LightSample sample = light(surface.position);
         if (sample.irradiance == Vec3(0.0f)) continue;
         const float cosine = glm::dot(surface.normal, sample.toLight);
         if (!(cosine > 0.0f && glm::dot(surface.geometricNormal, sample.toLight) > 0.0f)) continue;

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "core/base/rng.h"
+#include "core/scene/light.h"
 #include "reference/path_trace.h"
+
+#include <span>
 
 /// Radiance along single paths: the part of the path tracer that knows physics and nothing of pictures.
 namespace lrsm {
@@ -24,9 +27,13 @@ class PathRandom {
 /// Traces rays, counts them, and writes them down when asked.
 class Tracer {
   public:
-    explicit Tracer(const EmbreeScene& scene, std::vector<RecordedRay>* record = nullptr) : scene_(scene), record_(record) {}
+    Tracer(const EmbreeScene& scene, std::span<const LightSampler> lights, std::vector<RecordedRay>* record = nullptr)
+        : scene_(scene), lights_(lights), record_(record)
+    {
+    }
 
     const Scene& scene() const { return scene_.scene(); }
+    std::span<const LightSampler> lights() const { return lights_; }
     float offset(const Vec3& p) const { return scene_.offset(p); }
     std::optional<RayHit> closestHit(const Ray& ray)
     {
@@ -45,6 +52,7 @@ class Tracer {
 
   private:
     const EmbreeScene& scene_;
+    std::span<const LightSampler> lights_;
     std::vector<RecordedRay>* record_;
 };
 

@@ -153,7 +153,8 @@ double sampleUnit(const Scene& scene)
 }
 
 PathTracer::PathTracer(const Scene& scene, const Camera& camera, const ReferenceSettings& settings)
-    : scene_(scene), settings_((validate(settings), settings)), embree_(scene), specular_(anySpecular(scene)), unit_(sampleUnit(scene))
+    : scene_(scene), settings_((validate(settings), settings)), embree_(scene), lights_(scene.lights.begin(), scene.lights.end()),
+      specular_(anySpecular(scene)), unit_(sampleUnit(scene))
 {
     shootPrimary(camera);
 }
@@ -169,7 +170,7 @@ void PathTracer::shootPrimary(const Camera& camera)
     primary_ = {{width, height}, {width, height}, {width, height}, {width, height}, {width, height}};
     std::mutex countsMutex;
     parallelFor(primary_.covered.texels.size(), kChunkPixels, [&](std::size_t begin, std::size_t end) {
-        Tracer tracer(embree_);
+        Tracer tracer(embree_, lights_);
         for (std::size_t i = begin; i < end; ++i) {
             const auto x = float(i % std::size_t(width)), y = float(i / std::size_t(width));
             const CameraRay eye = pixelRay(camera, width, height, x + 0.5f, y + 0.5f);
@@ -226,7 +227,7 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
 
         parallelFor(state.chunkBlocks.size(), 1, [&](std::size_t chunk, std::size_t) {
             if (state.chunkBlocks[chunk] != number || halted()) return;
-            Tracer tracer(embree_);
+            Tracer tracer(embree_, lights_);
             std::uint64_t invalid = 0;
             const std::size_t end = std::min((chunk + 1) * kChunkPixels, primary_.covered.texels.size());
             for (std::size_t i = chunk * kChunkPixels; i < end; ++i) {
@@ -277,7 +278,7 @@ double PathTracer::progress(const ReferenceState& state)
 std::vector<RecordedRay> PathTracer::recordRays(std::size_t limitPixels) const
 {
     std::vector<RecordedRay> rays;
-    Tracer tracer(embree_, &rays);
+    Tracer tracer(embree_, lights_, &rays);
     for (std::size_t i = 0; i < std::min(limitPixels, primary_.covered.texels.size()); ++i) {
         if (!primary_.covered.texels[i]) continue;
         const PixelSampler sampler({std::uint32_t(i), 0, settings_.blockBits, keyOf(settings_.seed)}, settings_, primary_.surface.texels[i], primary_.toEye.texels[i], channels());

@@ -2,6 +2,7 @@
 
 #include "core/base/image.h"
 #include "core/scene/camera.h"
+#include "core/scene/light.h"
 #include "reference/embree_scene.h"
 #include "reference/sample_sums.h"
 
@@ -108,6 +109,7 @@ class PathTracer {
     const Scene& scene_;
     ReferenceSettings settings_;
     EmbreeScene embree_;
+    std::vector<LightSampler> lights_;
     PrimaryHits primary_;
     RayCounts primaryRays_;
     bool specular_ = false;
