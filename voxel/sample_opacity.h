@@ -1,66 +1,15 @@
 #pragma once
 
 #include "voxel/opacity_pyramid.h"
+#include "voxel/sampling_vectors.h"
 
-#include <cstring>
+#include <algorithm>
 
 /// The filtered lookup, specialised on everything that does not change during a march: cone tracing makes on the order of a hundred million
-/// lookups a frame. Written with GCC/clang vector extensions: lane by lane plain IEEE arithmetic, so both compilers give the same bits.
+/// lookups a frame.
 namespace lrsm {
 
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-
-namespace sampling {
-
-/// a + f (b - a), 0 <= f < 1: exact at f = 0, for a == b and (rounding included) never outside [min(a, b), max(a, b)].
-inline Float4 lerp(Float4 a, Float4 b, Float4 f) { return a + f * (b - a); }
-
-inline Int4 floorToInt(Float4 t)
-{
-    const Int4 i = __builtin_convertvector(t, Int4);
-    return i + (__builtin_convertvector(i, Float4) > t);
-}
-
-/// The lower texel of the 2x2x2 that a lookup blends, and the fractions toward the upper ones.
-struct Footprint {
-    int x, y, z;
-    Float4 f;
-};
-
-/// Clamped to where all eight texels are border (also NaN), so that far coordinates stay in int's range.
-template <FilterFraction fraction>
-inline Footprint footprint(Float4 pVoxels, float texelsPerVoxel, int n)
-{
-    Float4 t = pVoxels * texelsPerVoxel - 0.5f;
-    const Float4 low = Float4{} - 2.0f, high = Float4{} + float(n + 1);
-    t = t > low ? t : low;
-    t = t < high ? t : high;
-    if constexpr (fraction == FilterFraction::fixed8)
-        t = __builtin_convertvector(floorToInt(t * 256.0f + 0.5f), Float4) * (1.0f / 256.0f);
-    const Int4 cell = floorToInt(t);
-    return {cell[0], cell[1], cell[2], t - __builtin_convertvector(cell, Float4)};
-}
-
-/// Blends eight values: lower[k] and upper[k] are the texels at x and x + 1 of row k = dy + 2 dz. Over x, then y, then z.
-inline float blendRows(Float4 lower, Float4 upper, Float4 f)
-{
-    const Float4 x = lerp(lower, upper, Float4{} + f[0]);
-    const float y0 = x[0] + f[1] * (x[1] - x[0]);
-    const float y1 = x[2] + f[1] * (x[3] - x[2]);
-    return y0 + f[2] * (y1 - y0);
-}
-
-/// Four bytes to four floats.
-inline Float4 widen(std::uint32_t bytes)
-{
-    const Int4 lanes = {std::int32_t(bytes & 255u), std::int32_t((bytes >> 8) & 255u), std::int32_t((bytes >> 16) & 255u), std::int32_t(bytes >> 24)};
-    return __builtin_convertvector(lanes, Float4);
-}
-
-}  // namespace sampling
-
-/// Values are blended as stored (0..255 or 0..1) over x, y, z and then level, scaled to density per level before the last, and divided by
+/// Values are blended as stored (0..255 or 0..1) over x, y and z, scaled to density per base voxel, blended over the level, and divided by
 /// 255 at the end (a correctly rounded division: a texel's centre gives its decoded value exactly). A float32 pyramid goes the same way.
 template <Storage storage, OpacityAxes axes, FilterFraction fraction>
 class OpacitySampler {
@@ -81,130 +30,159 @@ class OpacitySampler {
     {
         level = level > 0.0f ? level : 0.0f;
         level = level < float(topLevel_) ? level : float(topLevel_);
-        if (empty(pVoxels, level)) return Vec3(0.0f);
+        const Float4 p = {pVoxels.x, pVoxels.y, pVoxels.z, 0.0f};
+        if (knownEmpty(p, level)) return Vec3(0.0f);
         if constexpr (fraction == FilterFraction::fixed8) level = float(int(level * 256.0f + 0.5f)) * (1.0f / 256.0f);
         const int lower = int(level);
         const float f = level - float(lower);
-        const Float4 p = {pVoxels.x, pVoxels.y, pVoxels.z, 0.0f};
-        Float4 result = atLevel(p, lower);
-        if (f > 0.0f) result = sampling::lerp(result, atLevel(p, lower + 1), Float4{} + f);
+        Float4 result = blended(p, lower);
+        if (f > 0.0f) result = sampling::lerp(result, blended(p, lower + 1), sampling::splat(f));
         return decoded(result);
     }
 
     /// Trilinear lookup, as sampleLevel.
     Vec3 atLevel(const Vec3& pVoxels, int level) const
     {
-        if (empty(pVoxels, float(level))) return Vec3(0.0f);
-        return decoded(atLevel(Float4{pVoxels.x, pVoxels.y, pVoxels.z, 0.0f}, level));
+        const Float4 p = {pVoxels.x, pVoxels.y, pVoxels.z, 0.0f};
+        return knownEmpty(p, float(level)) ? Vec3(0.0f) : decoded(blended(p, level));
     }
 
-    /// True only where the lookup at `level` is exactly 0: one byte read instead of sixteen texels.
-    bool empty(const Vec3& p, float level) const
-    {
-        const float n = float(resolution_);
-        if (!(p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f && p.x < n && p.y < n && p.z < n)) return false;
-        const std::size_t brick = (std::size_t(int(p.z) >> 2) * brickEdge_ + std::size_t(int(p.y) >> 2)) * brickEdge_ + std::size_t(int(p.x) >> 2);
-        return level + 1.0f <= float(emptyLevels_[brick]);
-    }
+    /// True only where the lookup at `level` is exactly 0: one byte read instead of sixteen texels. The lookups above ask it themselves.
+    bool empty(const Vec3& pVoxels, float level) const { return knownEmpty(Float4{pVoxels.x, pVoxels.y, pVoxels.z, 0.0f}, level); }
 
   private:
+    using Float4 = sampling::Float4;
+    using Int4 = sampling::Int4;
     using Texel = std::conditional_t<storage == Storage::gpu, std::uint8_t, float>;
     static constexpr float kOne = storage == Storage::gpu ? 255.0f : 1.0f;
     static constexpr std::size_t kChannels = axes == OpacityAxes::directional ? 3 : 1;
 
     static Vec3 decoded(Float4 v)
     {
-        if constexpr (storage == Storage::gpu) v /= 255.0f;
+        if constexpr (storage == Storage::gpu) v /= sampling::splat(255.0f);
         return {v[0], v[1], v[2]};
     }
 
-    Float4 atLevel(Float4 p, int level) const
+    bool knownEmpty(Float4 p, float level) const
+    {
+        if (!sampling::all((p >= sampling::splat(0.0f)) & (p < sampling::splat(float(resolution_))))) return false;
+        const Int4 brick = __builtin_convertvector(p, Int4) >> 2;
+        return level + 1.0f <= float(emptyLevels_[(std::size_t(brick[2]) * brickEdge_ + std::size_t(brick[1])) * brickEdge_ + std::size_t(brick[0])]);
+    }
+
+    /// All lanes of an isotropic value are equal.
+    Float4 blended(Float4 p, int level) const
     {
         const int n = resolution_ >> level;
-        const auto at = sampling::footprint<fraction>(p, 1.0f / float(1 << level), n);
-        if (level == 0) return Float4{} + bits(at);
+        const auto at = sampling::footprint<fraction>(p, sampling::inversePower(level), n);
+        if (level == 0) return sampling::splat(blendedBits(at));
+
         const auto last = unsigned(n - 1);
-        const bool inside = unsigned(at.x) < last && unsigned(at.y) < last && unsigned(at.z) < last;
-        const auto size = std::size_t(n);
+        const bool inside = unsigned(at.cell[0]) < last && unsigned(at.cell[1]) < last && unsigned(at.cell[2]) < last;
         const Texel* texels = texels_ + levelOffset_[level] * kChannels;
         if constexpr (axes == OpacityAxes::isotropic) {
+            return sampling::splat(inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at));
+        } else {
+            return (inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at)) * sampling::splat(sampling::inversePower(std::min(level, 3)));
+        }
+    }
+
+    /// All eight texels exist. A directional texel is loaded with one value more, which is there: the next texel's or the next level's
+    /// (the last level, 1x1x1, always goes the border's way).
+    static auto blendedInside(const Texel* texels, int n, const sampling::Footprint& at)
+    {
+        const auto size = std::size_t(n);
+        const Texel* row = texels + ((std::size_t(at.cell[2]) * size + std::size_t(at.cell[1])) * size + std::size_t(at.cell[0])) * kChannels;
+        const std::size_t dy = size * kChannels, dz = size * dy;
+        const Texel* const rows[4] = {row, row + dy, row + dz, row + dz + dy};
+        if constexpr (axes == OpacityAxes::isotropic) {
             Float4 lower, upper;
-            if (inside) {
-                const Texel* t = texels + (std::size_t(at.z) * size + std::size_t(at.y)) * size + std::size_t(at.x);
-                const Texel* tz = t + size * size;
-                lower = Float4{float(t[0]), float(t[size]), float(tz[0]), float(tz[size])};
-                upper = Float4{float(t[1]), float(t[size + 1]), float(tz[1]), float(tz[size + 1])};
-            } else {
-                for (int row = 0; row < 4; ++row) {
-                    lower[row] = borderTexel(texels, n, at.x, at.y + (row & 1), at.z + (row >> 1), 0);
-                    upper[row] = borderTexel(texels, n, at.x + 1, at.y + (row & 1), at.z + (row >> 1), 0);
-                }
-            }
-            return Float4{} + sampling::blendRows(lower, upper, at.f);
+            sampling::loadPairs(rows, lower, upper);
+            return sampling::blendRows(lower, upper, at.f);
         } else {
             Float4 corner[8];
-            if (inside) {
-                const Texel* t = texels + ((std::size_t(at.z) * size + std::size_t(at.y)) * size + std::size_t(at.x)) * 3;
-                for (std::size_t k = 0; k < 8; ++k) corner[k] = load(t + ((k & 1) + ((k >> 1) & 1) * size + (k >> 2) * size * size) * 3);
-            } else {
-                for (int k = 0; k < 8; ++k)
-                    for (int c = 0; c < 4; ++c)
-                        corner[k][c] = c == 3 ? 0.0f : borderTexel(texels, n, at.x + (k & 1), at.y + ((k >> 1) & 1), at.z + (k >> 2), c);
+            for (int k = 0; k < 8; ++k) corner[k] = sampling::loadFour(rows[k >> 1] + 3 * (k & 1));
+            return sampling::blendCorners(corner, at.f);
+        }
+    }
+
+    /// Some texels are border: they count as 0.
+    static auto blendedAtBorder(const Texel* texels, int n, const sampling::Footprint& at)
+    {
+        const int last = n - 1;
+        std::size_t offset[3][2];  // x, y, z; lower, upper: clamped into the level
+        bool exists[3][2];
+        std::size_t stride = kChannels;
+        for (int axis = 0; axis < 3; ++axis, stride *= std::size_t(n)) {
+            for (int k = 0; k < 2; ++k) {
+                const int i = at.cell[axis] + k;
+                exists[axis][k] = i >= 0 && i <= last;
+                offset[axis][k] = std::size_t(std::clamp(i, 0, last)) * stride;
             }
-            const Float4 fx = Float4{} + at.f[0], fy = Float4{} + at.f[1], fz = Float4{} + at.f[2];
-            const Float4 y0 = sampling::lerp(sampling::lerp(corner[0], corner[1], fx), sampling::lerp(corner[2], corner[3], fx), fy);
-            const Float4 y1 = sampling::lerp(sampling::lerp(corner[4], corner[5], fx), sampling::lerp(corner[6], corner[7], fx), fy);
-            return sampling::lerp(y0, y1, fz) * (1.0f / float(1 << std::min(level, 3)));
         }
-    }
-
-    static float borderTexel(const Texel* texels, int n, int x, int y, int z, int channel)
-    {
-        const auto un = unsigned(n);
-        if (unsigned(x) >= un || unsigned(y) >= un || unsigned(z) >= un) return 0.0f;
-        const auto size = std::size_t(n);
-        return float(texels[((std::size_t(z) * size + std::size_t(y)) * size + std::size_t(x)) * kChannels + std::size_t(channel)]);
-    }
-
-    /// A directional texel and one value beyond it, which the next level always holds (1x1x1 lookups take the border's way).
-    static Float4 load(const Texel* texel)
-    {
-        if constexpr (storage == Storage::gpu) {
-            std::uint32_t bytes;
-            std::memcpy(&bytes, texel, sizeof bytes);
-            return sampling::widen(bytes);
-        } else {
-            Float4 values;
-            std::memcpy(&values, texel, sizeof values);
-            return values;
-        }
-    }
-
-    std::uint32_t voxelBit(int x, int y, int z) const
-    {
-        const auto n = unsigned(resolution_);
-        if (unsigned(x) >= n || unsigned(y) >= n || unsigned(z) >= n) return 0;
-        const std::size_t brick = (std::size_t(z >> 2) * brickEdge_ + std::size_t(y >> 2)) * brickEdge_ + std::size_t(x >> 2);
-        return std::uint32_t(bricks_[brick] >> BitGrid::bitIndex(x, y, z)) & 1u;
-    }
-
-    /// Level 0. The eight bits as they lie in a brick: dx + 4 dy + 16 dz.
-    float bits(const sampling::Footprint& at) const
-    {
-        std::uint32_t pattern = 0;
+        Float4 corner[8];
         for (int k = 0; k < 8; ++k) {
             const int dx = k & 1, dy = (k >> 1) & 1, dz = k >> 2;
-            pattern |= voxelBit(at.x + dx, at.y + dy, at.z + dz) << (dx + 4 * dy + 16 * dz);
+            const Texel* t = texels + offset[0][dx] + offset[1][dy] + offset[2][dz];
+            const Int4 mask = Int4{} - std::int32_t(exists[0][dx] && exists[1][dy] && exists[2][dz]);
+            if constexpr (axes == OpacityAxes::isotropic)
+                corner[k] = sampling::keep(mask, sampling::splat(float(t[0])));
+            else
+                corner[k] = sampling::keep(mask, sampling::loadThree(t));
         }
-        if (pattern == 0) return 0.0f;
-        if (pattern == 0x330033u) return kOne;
-        Float4 lower, upper;
-        for (int row = 0; row < 4; ++row) {
-            const int shift = 4 * (row & 1) + 16 * (row >> 1);
-            lower[row] = (pattern >> shift) & 1u ? kOne : 0.0f;
-            upper[row] = (pattern >> shift) & 2u ? kOne : 0.0f;
-        }
+        if constexpr (axes == OpacityAxes::isotropic)
+            return sampling::blendCorners(corner, at.f)[0];
+        else
+            return sampling::blendCorners(corner, at.f);
+    }
+
+    /// Level 0, blended; the same for all axes.
+    float blendedBits(const sampling::Footprint& at) const
+    {
+        const auto last = unsigned(resolution_ - 1);
+        const bool inside = unsigned(at.cell[0]) < last && unsigned(at.cell[1]) < last && unsigned(at.cell[2]) < last;
+        const std::uint32_t bits = inside ? bitsInside(at.cell[0], at.cell[1], at.cell[2]) : bitsAtBorder(at.cell[0], at.cell[1], at.cell[2]);
+        if (bits == 0) return 0.0f;
+        if (bits == 0x330033u) return kOne;
+        const Int4 pattern = Int4{} + std::int32_t(bits);
+        const Float4 lower = sampling::keep((pattern & Int4{0x1, 0x10, 0x10000, 0x100000}) != 0, sampling::splat(kOne));
+        const Float4 upper = sampling::keep((pattern & Int4{0x2, 0x20, 0x20000, 0x200000}) != 0, sampling::splat(kOne));
         return sampling::blendRows(lower, upper, at.f);
+    }
+
+    /// The 2x2x2 bits from (x, y, z) as they would lie in one brick: dx + 4 dy + 16 dz.
+    std::uint32_t bitsInside(int x, int y, int z) const
+    {
+        const int bx = x & 3, by = y & 3, bz = z & 3;
+        const std::size_t row = brickEdge_, slice = brickEdge_ * brickEdge_;
+        const std::uint64_t* brick = bricks_ + std::size_t(z >> 2) * slice + std::size_t(y >> 2) * row + std::size_t(x >> 2);
+        if (bx != 3 && by != 3 && bz != 3) return std::uint32_t(*brick >> (bx + 4 * by + 16 * bz)) & 0x330033u;
+
+        std::uint32_t bits = 0;
+        const std::size_t nextX = bx == 3;
+        for (int k = 0; k < 4; ++k) {
+            const int yk = by + (k & 1), zk = bz + (k >> 1);
+            const std::uint64_t* b = brick + (yk == 4 ? row : 0) + (zk == 4 ? slice : 0);
+            const int shift = 4 * (yk & 3) + 16 * (zk & 3);
+            const auto nibble = std::uint32_t(b[0] >> shift) & 15u;
+            const auto nextNibble = std::uint32_t(b[nextX] >> shift) & 15u;
+            bits |= (((nibble | (nextNibble << 4)) >> bx) & 3u) << (4 * (k & 1) + 16 * (k >> 1));
+        }
+        return bits;
+    }
+
+    std::uint32_t bitsAtBorder(int x, int y, int z) const
+    {
+        std::uint32_t bits = 0;
+        const auto n = unsigned(resolution_);
+        for (int k = 0; k < 8; ++k) {
+            const int dx = k & 1, dy = (k >> 1) & 1, dz = k >> 2;
+            const int i = x + dx, j = y + dy, l = z + dz;
+            if (unsigned(i) >= n || unsigned(j) >= n || unsigned(l) >= n) continue;
+            const std::uint64_t brick = bricks_[(std::size_t(l >> 2) * brickEdge_ + std::size_t(j >> 2)) * brickEdge_ + std::size_t(i >> 2)];
+            bits |= (std::uint32_t(brick >> BitGrid::bitIndex(i, j, l)) & 1u) << (dx + 4 * dy + 16 * dz);
+        }
+        return bits;
     }
 
     const std::uint64_t* bricks_;
