@@ -1,9 +1,9 @@
 #pragma once
 
+#include "conetrace/gather.h"
 #include "conetrace/gbuffer.h"
 #include "core/base/settings.h"
 #include "lrsm/layers.h"
-#include "voxel/opacity_pyramid.h"
 
 #include <functional>
 #include <string>
@@ -13,26 +13,11 @@ namespace lrsm {
 
 /// What one pass took and made.
 struct PassReport {
-    std::string name;          ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", "gbuffer", "direct", "cones", "composite"
+    std::string name;          ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", ..., "gbuffer", "direct", "cones", "filter", "composite"
     double milliseconds = 0.0;
     std::size_t bytes = 0;     ///< held by the pass's output
     std::size_t gpuBytes = 0;  ///< the same in the GPU's formats
     std::string sha256;        ///< of the output; empty unless asked for
-};
-
-struct ConeCounts {
-    std::uint64_t cones = 0;
-    std::uint64_t steps = 0;
-    std::uint64_t voxelTaps = 0;    ///< quadrilinear
-    std::uint64_t lrsmSamples = 0;  ///< one layer's trilinear footprint each
-    ConeCounts& operator+=(const ConeCounts& other)
-    {
-        cones += other.cones;
-        steps += other.steps;
-        voxelTaps += other.voxelTaps;
-        lrsmSamples += other.lrsmSamples;
-        return *this;
-    }
 };
 
 /// The picture, its parts, and what made it.
@@ -57,13 +42,6 @@ struct Frame {
         std::uint64_t negativeVariances = 0;
     };
     std::vector<LightReport> lights;
-};
-
-/// Everything that the cones read.
-struct World {
-    OpacityPyramid opacity;
-    std::vector<Lrsm> lrsms;  ///< one a light
-    std::vector<Rsm> rsms;    ///< kept for the direct light's shadows
 };
 
 struct RenderOptions {

@@ -117,16 +117,4 @@ double power(double x, double y)
     return exp2Exact(y * log2Exact(x));
 }
 
-float fastLog2(float x)
-{
-    // Exponent by integer arithmetic; the mantissa in [sqrt(1/2), sqrt 2) through the same artanh series, cut at s^7
-    // (first omitted term 2/ln2 s^9 / 9 < 5e-8).
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - 0x3f3504f3u;
-    const auto exponent = static_cast<std::int32_t>(bits) >> 23;
-    const float m = std::bit_cast<float>((bits & 0x007fffffu) + 0x3f3504f3u);
-    const float s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
-    const float series = ((0.41219858f * s2 + 0.57707802f) * s2 + 0.96179669f) * s2 + 2.8853901f;
-    return static_cast<float>(exponent) + s * series;
-}
-
 }  // namespace lrsm

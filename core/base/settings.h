@@ -69,7 +69,7 @@ enum class TransmittanceModel { exponential, linear };
 struct ConeSettings {
     Estimator estimator = Estimator::slab;
     int count = 6;                      ///< diffuse cones, 1..256
-    float apertureScale = 1.0f;         ///< traced aperture over the cone's own (60 degrees for six), (0, 2]
+    float apertureScale = 0.5f;         ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
     bool filter = true;                 ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
     int setsPerPixel = 1;               ///< cone sets of the 16 rotations averaged in each pixel, 1..16
@@ -87,7 +87,7 @@ struct ConeSettings {
     OpacityModel opacity = OpacityModel::density;
     float densityK = 2.0f;              ///< `paper`: optical depth of a one-voxel wall, > 0
     TransmittanceModel transmittance = TransmittanceModel::linear;  ///< `slab`
-    bool subtractOwnPlane = true;       ///< `slab`: receiver's own plane taken out of the opacity
+    bool subtractOwnPlane = false;      ///< `slab`: receiver's own plane taken out of the opacity
     float voxelLevelBias = -2.0f;       ///< added to log2(diameter in voxels)
     float emitterDelayTaps = 2.0f;      ///< `slab`: transmittance is taken this many tap widths before the emitter ...
     float emitterDelayVoxels = 0.75f;   ///< ... plus this many base voxels,

@@ -17,6 +17,7 @@ Settings literal()
     s.direct.shadows = Shadows::cone;
     ConeSettings& c = s.cones;
     c.estimator = Estimator::paper;
+    c.apertureScale = 1.0f;
     c.rotation = Rotation::none;
     c.filter = false;
     c.push = 0.0f;

@@ -49,6 +49,20 @@ TEST_CASE("fastLog2 holds its bound everywhere and is exact at powers of two", "
     for (int e = -100; e <= 100; ++e) CHECK(fastLog2(std::ldexp(1.0f, e)) == static_cast<float>(e));
 }
 
+TEST_CASE("fastExp2 holds its bound and is exact at whole numbers", "[core][elementary]")
+{
+    double worst = 0;
+    for (float x = -126.0f; x < 127.99f; x += 0.00173f)
+        worst = std::max(worst, std::abs(double(fastExp2(x)) / std::exp2(double(x)) - 1));
+    CAPTURE(worst);
+    CHECK(worst <= double(kFastExp2MaxError));
+    for (int e = -126; e <= 127; ++e) CHECK(fastExp2(float(e)) == std::ldexp(1.0f, e));
+    CHECK(fastExp2(-200.0f) == 0.0f);
+    CHECK(fastExp2(-std::numeric_limits<float>::infinity()) == 0.0f);
+    CHECK(std::isinf(fastExp2(129.0f)));
+    CHECK(std::isnan(fastExp2(std::nanf(""))));
+}
+
 TEST_CASE("elementary functions at their edges", "[core][elementary]")
 {
     CHECK(std::isnan(sinCos(std::nan("")).sin));

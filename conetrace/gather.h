@@ -1,0 +1,28 @@
+#pragma once
+
+#include "conetrace/gbuffer.h"
+#include "conetrace/march.h"
+#include "core/scene/requirements.h"
+
+namespace lrsm {
+
+/// Final gathering (Sec. 3.2): what the cones of every pixel bring in.
+struct Gathered {
+    Image<Vec3> irradiance;  ///< pi * sum of weight * I over the diffuse cones, W/m^2
+    Image<Vec3> specular;    ///< I of the specular cone, W/(m^2 sr); empty when the scene has no specular part
+    Image<float> opacity;    ///< weighted mean opacity of the diffuse cones
+    ConeCounts counts;
+
+    std::size_t byteSize() const { return irradiance.byteSize() + specular.byteSize() + opacity.byteSize(); }
+};
+
+/// Traces the cones of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
+/// `opacity` and `lrsms` are the world; `eye` decides the mirror direction.
+Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
+                    const Requirements& needs, const ConeSettings& settings);
+
+/// Text of how one pixel's cones went, step by step: what `--pixel` prints.
+std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
+                         const Requirements& needs, const ConeSettings& settings, int x, int y);
+
+}  // namespace lrsm

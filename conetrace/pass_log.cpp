@@ -1,0 +1,106 @@
+#include "conetrace/pass_log.h"
+
+#include "core/base/hash.h"
+
+namespace lrsm {
+namespace {
+
+constexpr std::size_t kHalf4Bytes = 8;
+
+template <class T>
+Sha256& addImage(Sha256& hash, const Image<T>& image)
+{
+    return hash.add(image.texels);
+}
+
+}  // namespace
+
+PassSize sizeOf(const BitGrid& grid)
+{
+    // A GPU has no 1-bit format: one byte a voxel (Sec. 5).
+    const auto n = static_cast<std::size_t>(grid.frame.resolution);
+    return {grid.byteSize(), n * n * n};
+}
+
+PassSize sizeOf(const OpacityPyramid& pyramid)
+{
+    const VoxelSettings settings{.resolution = pyramid.base.frame.resolution, .mipFilter = pyramid.mipFilter, .axes = pyramid.axes,
+                                 .storage = pyramid.storage};
+    return {pyramid.byteSize(), predictPyramidGpuBytes(settings)};
+}
+
+PassSize sizeOf(const Rsm& rsm)
+{
+    return {rsm.byteSize(), Rsm::gpuBytes(rsm.texels.width)};
+}
+
+PassSize sizeOf(const Lrsm& lrsm)
+{
+    return {lrsm.byteSize(), lrsm.gpuBytes()};
+}
+
+PassSize sizeOf(const GBuffer& gbuffer)
+{
+    return {gbuffer.byteSize(), gbuffer.byteSize()};
+}
+
+PassSize sizeOf(const Gathered& gathered)
+{
+    const std::size_t half4 = (gathered.irradiance.texels.size() + gathered.specular.texels.size()) * kHalf4Bytes;
+    return {gathered.byteSize(), half4};  // irradiance with opacity, and specular, as half x4
+}
+
+PassSize sizeOf(const Image<Vec3>& image)
+{
+    return {image.byteSize(), image.texels.size() * kHalf4Bytes};
+}
+
+std::string hashOf(const BitGrid& grid)
+{
+    return Sha256().add(grid.bricks).hex();
+}
+
+std::string hashOf(const OpacityPyramid& pyramid)
+{
+    return Sha256().add(pyramid.base.bricks).add(pyramid.unorm8).add(pyramid.float32).hex();
+}
+
+std::string hashOf(const Rsm& rsm)
+{
+    Sha256 hash;
+    addImage(hash, rsm.texels);
+    return addImage(hash, rsm.depthLinear).hex();
+}
+
+std::string hashOf(const Lrsm& lrsm)
+{
+    return Sha256().add(lrsm.texels).hex();
+}
+
+std::string hashOf(const GBuffer& gbuffer)
+{
+    Sha256 hash;
+    addImage(hash, gbuffer.position);
+    addImage(hash, gbuffer.geometricNormal);
+    addImage(hash, gbuffer.normal);
+    addImage(hash, gbuffer.albedo);
+    addImage(hash, gbuffer.specularColor);
+    addImage(hash, gbuffer.roughness);
+    addImage(hash, gbuffer.depthLinear);
+    return addImage(hash, gbuffer.objectId).hex();
+}
+
+std::string hashOf(const Gathered& gathered)
+{
+    Sha256 hash;
+    addImage(hash, gathered.irradiance);
+    addImage(hash, gathered.specular);
+    return addImage(hash, gathered.opacity).hex();
+}
+
+std::string hashOf(const Image<Vec3>& image)
+{
+    return Sha256().add(image.texels).hex();
+}
+
+}  // namespace lrsm

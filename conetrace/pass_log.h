@@ -1,0 +1,55 @@
+#pragma once
+
+#include "conetrace/render.h"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+/// Runs a pass, and notes its time, the bytes of what it made, and its hash.
+namespace lrsm {
+
+struct PassSize {
+    std::size_t bytes = 0, gpuBytes = 0;
+};
+PassSize sizeOf(const BitGrid& grid);
+PassSize sizeOf(const OpacityPyramid& pyramid);
+PassSize sizeOf(const Rsm& rsm);
+PassSize sizeOf(const Lrsm& lrsm);
+PassSize sizeOf(const GBuffer& gbuffer);
+PassSize sizeOf(const Gathered& gathered);
+PassSize sizeOf(const Image<Vec3>& image);
+
+/// SHA-256 of a pass's output: every value, no padding, no timing.
+std::string hashOf(const BitGrid& grid);
+std::string hashOf(const OpacityPyramid& pyramid);
+std::string hashOf(const Rsm& rsm);
+std::string hashOf(const Lrsm& lrsm);
+std::string hashOf(const GBuffer& gbuffer);
+std::string hashOf(const Gathered& gathered);
+std::string hashOf(const Image<Vec3>& image);
+
+class PassLog {
+  public:
+    PassLog(const RenderOptions& options, int passes) : options_(options), passes_(passes) {}
+
+    template <class Pass>
+    auto run(const std::string& name, Pass&& pass)
+    {
+        if (options_.progress) options_.progress(name, static_cast<double>(reports.size()) / passes_);
+        const auto begin = std::chrono::steady_clock::now();
+        auto output = std::forward<Pass>(pass)();
+        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+        const PassSize size = sizeOf(output);
+        reports.push_back({name, elapsed.count(), size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string()});
+        return output;
+    }
+
+    std::vector<PassReport> reports;
+
+  private:
+    const RenderOptions& options_;
+    int passes_;
+};
+
+}  // namespace lrsm

@@ -1,0 +1,84 @@
+#include "conetrace/render.h"
+
+#include "conetrace/composite.h"
+#include "conetrace/direct.h"
+#include "conetrace/irradiance_filter.h"
+#include "conetrace/pass_log.h"
+#include "voxel/voxelize.h"
+
+namespace lrsm {
+namespace {
+
+Frame::LightReport reportLight(const Rsm& rsm, const Lrsm& lrsm)
+{
+    Frame::LightReport report;
+    report.raster = rsm.raster;
+    report.conversions = rsm.conversions;
+    report.conversions += lrsm.conversions;
+    report.ranges = lrsm.ranges;
+    report.validTexelsPerLayer = lrsm.validTexelsPerLayer;
+    report.layersAsked = lrsm.layersAsked;
+    report.negativeVariances = lrsm.negativeVariances;
+    return report;
+}
+
+constexpr int kPassesPerFrame = 8, kPassesPerLight = 2;
+
+}  // namespace
+
+Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                  const RenderOptions& options)
+{
+    Frame frame;
+    PassLog log(options, kPassesPerFrame + kPassesPerLight * static_cast<int>(scene.lights.size()));
+
+    // Occlusion: binary voxels and their mips.
+    BitGrid occupied = log.run("voxelize", [&] { return voxelize(scene, settings.voxel); });
+    frame.voxelsSet = occupied.countOccupied();
+    const OpacityPyramid opacity = log.run("voxel mips", [&] { return buildPyramid(std::move(occupied), settings.voxel); });
+
+    // Light: an RSM a light, split into pre-filtered layers.
+    std::vector<Rsm> rsms;
+    std::vector<Lrsm> lrsms;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const std::string number = " " + std::to_string(i);
+        rsms.push_back(log.run("rsm" + number, [&] { return renderRsm(scene, scene.lights[i], needs, settings.rsm); }));
+        lrsms.push_back(log.run("lrsm" + number, [&] { return buildLrsm(rsms.back(), settings.layers); }));
+        frame.lights.push_back(reportLight(rsms.back(), lrsms.back()));
+    }
+
+    // Eye: the visible surfaces, their direct light, and the cones.
+    frame.gbuffer = log.run("gbuffer", [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
+    frame.direct = log.run("direct", [&] { return traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance; });
+    Gathered gathered =
+        log.run("cones", [&] { return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones); });
+    if (settings.cones.filter)
+        gathered.irradiance = log.run("filter", [&] { return filterIrradiance(gathered.irradiance, frame.gbuffer); });
+
+    // Picture.
+    frame.combined = log.run("composite", [&] {
+        IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, gathered.irradiance, gathered.specular);
+        Image<Vec3> sum = composite(frame.direct, indirect);
+        frame.indirectDiffuse = std::move(indirect.diffuse);
+        frame.indirectSpecular = std::move(indirect.specular);
+        return sum;
+    });
+    frame.irradiance = std::move(gathered.irradiance);
+    frame.opacity = std::move(gathered.opacity);
+    frame.cones = gathered.counts;
+    frame.gbufferRaster = frame.gbuffer.raster;
+    frame.passes = std::move(log.reports);
+    return frame;
+}
+
+std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                         const RenderOptions& options, int x, int y)
+{
+    const OpacityPyramid opacity = buildPyramid(voxelize(scene, settings.voxel), settings.voxel);
+    std::vector<Lrsm> lrsms;
+    for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, settings.rsm), settings.layers));
+    const GBuffer gbuffer = renderGBuffer(scene, camera, needs, {options.width, options.height});
+    return explainCones(gbuffer, camera, opacity, lrsms, needs, settings.cones, x, y);
+}
+
+}  // namespace lrsm

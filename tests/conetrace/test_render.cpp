@@ -1,0 +1,207 @@
+#include "conetrace/render.h"
+#include "core/base/parallel.h"
+#include "core/scene/builtin_scenes.h"
+#include "core/scene/light.h"
+#include "core/scene/shapes.h"
+
+#include "catch.h"
+
+#include <cmath>
+
+using namespace lrsm;
+
+namespace {
+
+/// A frame small enough for a test: everything on, little of it.
+Settings smallSettings(Estimator estimator = Estimator::slab)
+{
+    Settings s;
+    s.voxel.resolution = 64;
+    s.rsm.resolution = 128;
+    s.cones.estimator = estimator;
+    return s;
+}
+
+Frame renderSmall(const Scene& scene, const Settings& settings, int width = 48, int height = 36)
+{
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    return renderFrame(scene, scene.cameras.at(0), analyseRequirements(scene, settings.force), settings, options);
+}
+
+double mean(const Image<Vec3>& image)
+{
+    double sum = 0;
+    for (const Vec3& v : image.texels) sum += double(v.x + v.y + v.z) / 3;
+    return sum / double(image.texels.size());
+}
+
+std::vector<std::string> hashes(const Frame& frame)
+{
+    std::vector<std::string> all;
+    for (const PassReport& pass : frame.passes) all.push_back(pass.name + " " + pass.sha256);
+    return all;
+}
+
+/// Scales positions, lights and cameras; irradiance stays what it was.
+Scene scaledScene(Scene scene, float factor)
+{
+    for (Mesh& mesh : scene.meshes)
+        for (Vec3& p : mesh.positions) p *= factor;
+    for (Light& light : scene.lights) {
+        light.position *= factor;
+        if (light.type != LightType::directional) light.intensity *= factor * factor;
+    }
+    for (Camera& camera : scene.cameras) {
+        camera.position *= factor;
+        camera.nearPlane *= factor;
+    }
+    updateBounds(scene);
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("frame: the same bits with 1, 2 and 8 threads, pass by pass", "[conetrace][invariance]")
+{
+    const auto scene = makeBuiltinScene(GENERATE("cornell-glossy", "atrium"));
+    const Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
+    std::vector<std::string> first;
+    for (const int threads : {1, 2, 8}) {
+        const ThreadLimit limit(threads);
+        const auto now = hashes(renderSmall(*scene, settings));
+        if (first.empty()) first = now;
+        CHECK(now == first);
+    }
+    CHECK(first.size() >= 8);
+}
+
+TEST_CASE("frame: light scaled by 2^k scales the picture exactly (float32), or to half's precision (gpu)", "[conetrace][invariance]")
+{
+    auto scene = makeBuiltinScene(GENERATE("cornell-glossy", "atrium"));
+    Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
+    const Storage storage = GENERATE(Storage::float32, Storage::gpu);
+    settings.rsm.storage = settings.layers.storage = storage;
+    const Frame before = renderSmall(*scene, settings);
+    for (Light& light : scene->lights) light.intensity *= 8.0f;
+    const Frame after = renderSmall(*scene, settings);
+    for (std::size_t i = 0; i < before.combined.texels.size(); ++i) {
+        const Vec3 scaled = 8.0f * before.irradiance.texels[i], now = after.irradiance.texels[i];
+        if (storage == Storage::float32) {
+            REQUIRE(now == scaled);
+            REQUIRE(after.combined.texels[i] == 8.0f * before.combined.texels[i]);
+        } else {
+            // Half's denormals, below 6e-5, are the only values that do not scale.
+            for (int c = 0; c < 3; ++c) REQUIRE(now[c] == Approx(scaled[c]).epsilon(1e-3).margin(1e-4));
+        }
+    }
+    CHECK(mean(before.irradiance) > 0);
+}
+
+TEST_CASE("frame: a scene scaled by 2^k gives the same irradiance to the bit", "[conetrace][invariance]")
+{
+    const auto scene = makeBuiltinScene(GENERATE("cornell-box", "atrium"));
+    const Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
+    const Frame before = renderSmall(*scene, settings), after = renderSmall(scaledScene(*scene, 16.0f), settings);
+    CHECK(before.voxelsSet == after.voxelsSet);
+    CHECK(before.irradiance.texels == after.irradiance.texels);
+    CHECK(before.direct.texels == after.direct.texels);
+    CHECK(before.opacity.texels == after.opacity.texels);
+}
+
+TEST_CASE("frame: what the scene analysis leaves out changes no bit", "[conetrace][requirements]")
+{
+    const auto scene = makeBuiltinScene(GENERATE("cornell-box", "cornell-glossy", "atrium"));
+    Settings settings = smallSettings();
+    const Frame lean = renderSmall(*scene, settings);
+    settings.force.everything = true;
+    settings.layers.dropEmpty = false;
+    const Frame full = renderSmall(*scene, settings);
+    CHECK(lean.combined.texels == full.combined.texels);
+    CHECK(lean.irradiance.texels == full.irradiance.texels);
+    CHECK(lean.indirectSpecular.texels == full.indirectSpecular.texels);
+}
+
+TEST_CASE("furnace: constant radiance in, the closed form out", "[conetrace][furnace]")
+{
+    // Inside a sphere lit from its centre E = rho I / r^2 = 0.5 everywhere.
+    const auto scene = makeBuiltinScene("furnace");
+    Settings settings = smallSettings();
+    const int resolution = GENERATE(32, 64, 128);
+    settings.voxel.resolution = resolution;
+    const Frame frame = renderSmall(*scene, settings);
+    CAPTURE(resolution);
+    double least = 1e9, most = 0, sum = 0;
+    for (const Vec3& e : frame.irradiance.texels) {
+        least = std::min(least, double(e.x));
+        most = std::max(most, double(e.x));
+        sum += double(e.x);
+    }
+    CAPTURE(least, most);
+    CHECK(sum / double(frame.irradiance.texels.size()) == Approx(0.5).epsilon(0.08));
+    CHECK(least > 0.40);
+    CHECK(most < 0.60);
+    CHECK(mean(frame.direct) == Approx(0.5 / double(kPi)).epsilon(0.02));
+}
+
+TEST_CASE("frame: moving the voxel grid, or doubling voxels or RSM, changes the mean by no more than a few percent", "[conetrace][invariance]")
+{
+    const auto scene = makeBuiltinScene("cornell-box");
+    const Settings settings = smallSettings();
+    const double base = mean(renderSmall(*scene, settings).irradiance);
+
+    Settings finerRsm = settings;
+    finerRsm.rsm.resolution *= 2;
+    CHECK(mean(renderSmall(*scene, finerRsm).irradiance) == Approx(base).epsilon(0.02));
+
+    Settings finerVoxels = settings;
+    finerVoxels.voxel.resolution *= 2;
+    CHECK(mean(renderSmall(*scene, finerVoxels).irradiance) == Approx(base).epsilon(0.08));
+
+    // A far speck widens the bounds on one side and so shifts the grid by a fraction of a voxel.
+    Scene shifted = *scene;
+    shifted.bounds.max += Vec3(0.004f, 0.003f, 0.005f);
+    CHECK(mean(renderSmall(shifted, settings).irradiance) == Approx(base).epsilon(0.04));
+}
+
+TEST_CASE("frame: several lights add up", "[conetrace]")
+{
+    auto scene = makeBuiltinScene("cornell-box");
+    const Settings settings = smallSettings();
+    const Frame one = renderSmall(*scene, settings);
+    scene->lights.push_back(scene->lights[0]);
+    const Frame two = renderSmall(*scene, settings);
+    for (std::size_t i = 0; i < one.irradiance.texels.size(); ++i)
+        for (int c = 0; c < 3; ++c) REQUIRE(two.irradiance.texels[i][c] == Approx(2 * one.irradiance.texels[i][c]).epsilon(1e-5).margin(1e-9));
+}
+
+TEST_CASE("frame: two-rooms keeps most of the light in the lit room", "[conetrace][leak]")
+{
+    const auto scene = makeBuiltinScene("two-rooms");
+    const Frame frame = renderSmall(*scene, smallSettings(), 64, 24);
+    double left = 0, right = 0;
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 64; ++x) (x < 32 ? left : right) += double(frame.irradiance.at(x, y).x);
+    CAPTURE(right / left);
+    CHECK(left > 0);
+    CHECK(right < 0.25 * left);
+}
+
+TEST_CASE("pixel: the explanation names every cone and ends with the pixel's own irradiance", "[conetrace][pixel]")
+{
+    const auto scene = makeBuiltinScene("cornell-box");
+    Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
+    settings.cones.filter = false;
+    RenderOptions options;
+    options.width = 48;
+    options.height = 36;
+    const Requirements needs = analyseRequirements(*scene, settings.force);
+    const Frame frame = renderFrame(*scene, scene->cameras[0], needs, settings, options);
+    const std::string text = explainPixel(*scene, scene->cameras[0], needs, settings, options, 20, 30);
+    for (int cone = 0; cone < 6; ++cone) CHECK(text.find("cone " + std::to_string(cone)) != std::string::npos);
+    char expected[128];
+    const Vec3 e = frame.irradiance.at(20, 30);
+    std::snprintf(expected, sizeof expected, "irradiance (before the 4x4 filter) %.6g %.6g %.6g", double(e.x), double(e.y), double(e.z));
+    CHECK(text.find(expected) != std::string::npos);
+}
