@@ -6,9 +6,9 @@ namespace {
 
 /// A cone sample as the light sees it.
 struct LightSpaceSample {
-    float depth = 0.0f;   ///< z_c, linear depth of the light
-    float window = 0.0f;  ///< half the depth interval of Eq. 12, in the same unit
-    LrsmFootprint footprint;
+    float depth;   ///< z_c, linear depth of the light
+    float window;  ///< half the depth interval of Eq. 12, in the same unit
+    const LrsmFootprint& footprint;
 };
 
 /// One layer's part of Eq. 14, weighted by f. Stops at the first factor that is 0, as Algorithm 1 does.
@@ -48,22 +48,16 @@ Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& 
     const LightSpacePoint p = projectToLight(lrsm.projection, sample.centre);
     if (!p.valid || !(p.u >= 0.0f && p.u <= 1.0f && p.v >= 0.0f && p.v <= 1.0f)) return Vec3(0.0f);
 
-    LightSpaceSample at;
-    at.depth = p.depth;
-    at.window = sample.radius * settings.vRadiusScale / lrsm.projection.depthRange();
+    const float level = lrsmLevel(2.0f * sample.radius, p.texelSize, settings.rsmLevelBias, settings.rsmMinLevel);
+    const LrsmFootprint footprint = makeFootprint(lrsm, p.u, p.v, level, settings.filterFraction);
+    const LightSpaceSample at{p.depth, sample.radius * settings.vRadiusScale / lrsm.projection.depthRange(), footprint};
+    const bool centred = settings.layerSelection == LayerSelection::centre;
 
     Vec3 outgoing(0.0f);
-    bool located = false;
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
         const LayerRange& range = lrsm.ranges[static_cast<std::size_t>(layer)];
-        const bool centred = settings.layerSelection == LayerSelection::centre;
-        const float f = centred ? decay(range, p.depth) : touches(range, p.depth, at.window) ? 1.0f : 0.0f;
+        const float f = centred ? decay(range, at.depth) : touches(range, at.depth, at.window) ? 1.0f : 0.0f;
         if (!(f > 0.0f)) continue;
-        if (!located) {
-            const float level = lrsmLevel(2.0f * sample.radius, p.texelSize, settings.rsmLevelBias, settings.rsmMinLevel);
-            at.footprint = makeFootprint(lrsm, p.u, p.v, level, settings.filterFraction);
-            located = true;
-        }
         const LayerTerms layerTerms = evaluateLayer(lrsm, layer, f, at, sample.toReceiver, settings, phi);
         outgoing += layerTerms.outgoing;
         if (terms) terms->push_back(layerTerms);
