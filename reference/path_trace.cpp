@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "reference/directions.h"
 #include "reference/integrator.h"
+#include "reference/sample_layout.h"
 
 #include <mutex>
 
@@ -12,9 +13,6 @@ namespace lrsm {
 namespace {
 
 constexpr std::size_t kChunkPixels = 256;
-
-/// Where each value of a pixel lies in the sums.
-enum Channel { kIrradiance = 0, kOpacity = 3, kLobe = 4, kCone = 7, kDiffuseChannels = 4, kLobeChannels = 7, kConeChannels = 10 };
 
 /// What the counter of a random draw is for: keeps the streams of one pixel apart.
 enum Purpose : std::uint32_t { kDiffuseDirection = 0, kLobeDirection = 1, kConeDirection = 2, kDiffusePath = 16, kLobePath = 17, kConePath = 18 };
@@ -289,48 +287,9 @@ std::vector<RecordedRay> PathTracer::recordRays(std::size_t limitPixels) const
 
 ReferenceFrame PathTracer::resolve(const SampleSums& sums) const
 {
-    const int width = settings_.width, height = settings_.height;
-    const bool variance = sums.completeBlocks >= 2;
-    const auto picture = [&](bool wanted) { return wanted ? Image<Vec3>(width, height) : Image<Vec3>(); };
-    ReferenceFrame frame;
-    frame.samples = sums.sampleCount();
-    frame.direct = primary_.direct;
-    frame.irradiance = frame.indirectDiffuse = frame.indirectSpecular = frame.combined = picture(true);
-    frame.opacity = Image<float>(width, height);
-    frame.irradianceVariance = frame.indirectDiffuseVariance = frame.indirectSpecularVariance = frame.combinedVariance = picture(variance);
-    if (variance) frame.opacityVariance = Image<float>(width, height);
-    if (sums.channels == kConeChannels) {
-        frame.specularCone = picture(true);
-        frame.specularConeVariance = picture(variance);
-    }
-
-    parallelFor(primary_.covered.texels.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        const auto read = [&](std::size_t pixel, int channel, Image<Vec3>& mean, Image<Vec3>& spread) {
-            for (int c = 0; c < 3; ++c) {
-                const Estimate e = estimate(sums, pixel * std::size_t(sums.channels) + std::size_t(channel + c));
-                mean.texels[pixel][c] = float(e.mean * unit_);
-                if (variance) spread.texels[pixel][c] = float(e.variance * unit_ * unit_);
-            }
-        };
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!primary_.covered.texels[i]) continue;
-            read(i, kIrradiance, frame.irradiance, frame.irradianceVariance);
-            if (sums.channels > kDiffuseChannels) read(i, kLobe, frame.indirectSpecular, frame.indirectSpecularVariance);
-            if (sums.channels == kConeChannels) read(i, kCone, frame.specularCone, frame.specularConeVariance);
-            const Estimate open = estimate(sums, i * std::size_t(sums.channels) + kOpacity);
-            frame.opacity.texels[i] = float(open.mean);
-
-            const Vec3 reflectance = primary_.surface.texels[i].albedo / kPi;
-            frame.indirectDiffuse.texels[i] = reflectance * frame.irradiance.texels[i];
-            frame.combined.texels[i] = frame.direct.texels[i] + frame.indirectDiffuse.texels[i] + frame.indirectSpecular.texels[i];
-            if (!variance) continue;
-            frame.opacityVariance.texels[i] = float(open.variance);
-            frame.indirectDiffuseVariance.texels[i] = reflectance * reflectance * frame.irradianceVariance.texels[i];
-            // The two lobes are sampled independently.
-            frame.combinedVariance.texels[i] = frame.indirectDiffuseVariance.texels[i] + frame.indirectSpecularVariance.texels[i];
-        }
-    });
-    return frame;
+    Image<Vec3> albedo(settings_.width, settings_.height);
+    for (std::size_t i = 0; i < albedo.texels.size(); ++i) albedo.texels[i] = primary_.surface.texels[i].albedo;
+    return resolveFrame(sums, unit_, primary_.direct, albedo);
 }
 
 ReferenceFrame renderReference(const Scene& scene, const Camera& camera, const ReferenceSettings& settings, std::uint64_t samples)

@@ -99,6 +99,7 @@ class PathTracer {
     static double progress(const ReferenceState& state);
     /// The picture of complete sums.
     ReferenceFrame resolve(const SampleSums& sums) const;
+    double unit() const { return unit_; }
 
     /// The rays that the first `limit` pixels' first block shoots, in order.
     std::vector<RecordedRay> recordRays(std::size_t limitPixels) const;
@@ -118,6 +119,9 @@ class PathTracer {
 
 /// Power of two near the light that the scene's lights throw, so that fixed-point sums keep their relative precision at any exposure.
 double sampleUnit(const Scene& scene);
+
+/// The picture of complete sums, given what does not depend on samples: `unit` of the scene, direct light and albedo.
+ReferenceFrame resolveFrame(const SampleSums& sums, double unit, const Image<Vec3>& direct, const Image<Vec3>& albedo);
 
 /// All samples of [0, samples), for tests and tools.
 ReferenceFrame renderReference(const Scene& scene, const Camera& camera, const ReferenceSettings& settings, std::uint64_t samples);
