@@ -60,6 +60,14 @@ PlaneSlab planeSlab(const TriangleSetup& t)
 struct DepthWalk {
     std::int64_t q, r;
     DepthWalk(const QuotientRemainder& start) : q(start.quotient), r(start.remainder) {}
+    DepthWalk advanced(std::int64_t by, std::int64_t d) const  // for |by| of a few d
+    {
+        DepthWalk w = *this;
+        w.r += by;
+        for (; w.r >= d; w.r -= d) ++w.q;
+        for (; w.r < 0; w.r += d) --w.q;
+        return w;
+    }
     void next(std::int64_t slope, std::int64_t d)
     {
         r -= slope;
@@ -123,6 +131,17 @@ void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& grid)
     const Span columns = t.cells[u], depths = t.cells[w];
     constexpr bool overlap = mode != Voxelization::raster;  // raster looks at one projection only
 
+    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(grid.frame.resolution));
+    const std::size_t stride[3] = {1, edge, edge * edge};
+    BrickWriter writer(grid);
+    if (t.boxIsExact) {
+        for (int j = rows.lo; j <= rows.hi; ++j)
+            for (int i = columns.lo; i <= columns.hi; ++i)
+                setColumn(writer, std::size_t(j >> 2) * stride[v] + std::size_t(i >> 2) * stride[u], ((j & 3) << (2 * v)) + ((i & 3) << (2 * u)),
+                          w, stride[w], depths);
+        return;
+    }
+
     // The (depth, column) projection bounds the depth by the column alone: once for all rows.
     std::array<Span, kMaxResolution> depthOfColumn;
     if constexpr (overlap) {
@@ -130,13 +149,11 @@ void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& grid)
         for (int i = columns.lo; i <= columns.hi; ++i, walk.next()) depthOfColumn[std::size_t(i - columns.lo)] = walk.current();
     }
 
-    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(grid.frame.resolution));
-    const std::size_t stride[3] = {1, edge, edge * edge};
     const PlaneSlab slab = planeSlab<mode>(t);
     const std::int64_t nu = t.normal[u], nv = t.normal[v], nw = t.normal[w];
     SpanWalk<mode> columnWalk(t.triangle, u, v, columns, rows.lo);
     SpanWalk<mode> depthWalk(t.triangle, w, v, depths, rows.lo);
-    BrickWriter writer(grid);
+    const auto gap = std::int64_t(slab.high - slab.low) - (nw - 1);  // between the two numerators below, at most 3 nw
 
     for (int j = rows.lo; j <= rows.hi; ++j, columnWalk.next(), depthWalk.next()) {
         const Span inRow = columnWalk.current();
@@ -147,8 +164,12 @@ void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& grid)
         DepthWalk low({0, 0}), high({0, 0});
         if (nw > 0) {
             const Int128 along = Int128(nu) * inRow.lo + Int128(nv) * j;
-            high = divide(slab.high - along, nw);
-            low = overlap ? DepthWalk(divide(slab.low - along + (nw - 1), nw)) : high;
+            if constexpr (overlap) {
+                low = divide(slab.low - along + (nw - 1), nw);
+                high = low.advanced(gap, nw);
+            } else {
+                low = high = divide(slab.high - along, nw);
+            }
         }
         const std::size_t rowBase = std::size_t(j >> 2) * stride[v];
         const int rowBit = (j & 3) << (2 * v);
@@ -173,10 +194,12 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
     TriangleSetup t;
     t.triangle = triangle;
     std::array<std::int64_t, 3> e1, e2, extent;
+    int singleCells = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto [low, high] = std::minmax({triangle.vertex[0][axis], triangle.vertex[1][axis], triangle.vertex[2][axis]});
         t.cells[axis] = touchedCells(low, high, resolution);
         if (t.cells[axis].empty()) return t;
+        singleCells += ceilVoxel(low) - 1 == floorVoxel(high);
         e1[axis] = triangle.vertex[1][axis] - triangle.vertex[0][axis];
         e2[axis] = triangle.vertex[2][axis] - triangle.vertex[0][axis];
         extent[axis] = high - low;
@@ -198,6 +221,8 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
     t.rowAxis = t.depthAxis == 2 ? 1 : 2;
     if (t.normal[t.depthAxis] < 0)
         for (std::int64_t& c : t.normal) c = -c;
+    // Within one cell along two axes the triangle, being connected, touches every cell along the third.
+    t.boxIsExact = mode == Voxelization::conservative && singleCells >= 2;
     t.empty = false;
     return t;
 }

@@ -13,6 +13,7 @@ struct TriangleSetup {
     std::size_t columnAxis = 0, rowAxis = 1, depthAxis = 2;
     std::array<Span, 3> cells;                 ///< touched along each axis, cut to the grid
     bool empty = true;                         ///< touches no voxel
+    bool boxIsExact = false;                   ///< conservative: all of `cells` are touched, no test needed
 
     std::size_t columnCount() const
     {

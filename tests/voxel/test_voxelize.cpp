@@ -31,7 +31,8 @@ std::vector<Case> awkwardTriangles(int n, unsigned seed, int count)
     const float edge = float(n);
     std::vector<Case> cases = {{"scene-sized", {}}, {"small", {}},    {"sliver", {}}, {"on voxel corners", {}}, {"axis-aligned", {}},
                                {"edge-on", {}},     {"segment", {}},  {"point", {}},  {"partly outside", {}},   {"far outside", {}},
-                               {"on half voxels", {}}};
+                               {"on half voxels", {}},
+                               {"grazing corners", {}}};
     for (int i = 0; i < count; ++i) {
         const Vec3 a = point(0, edge), b = point(0, edge), c = point(0, edge);
         cases[0].triangles.push_back({a, b, c});
@@ -53,6 +54,15 @@ std::vector<Case> awkwardTriangles(int n, unsigned seed, int count)
         cases[8].triangles.push_back({point(-edge, 2 * edge), point(-edge, 2 * edge), point(-edge, 2 * edge)});
         cases[9].triangles.push_back({point(-2000, 2000), point(-2000, 2000), point(-2000, 2000)});
         cases[10].triangles.push_back({rounded(a, 0.5f), rounded(b, 0.5f), rounded(c, 0.5f)});
+        // One unit of the fixed-point grid off a corner: the smallest miss there is.
+        const auto graze = [&](const Vec3& q) {
+            const float dx = float(random() % 3) - 1, dy = float(random() % 3) - 1, dz = float(random() % 3) - 1;
+            return rounded(q, i % 2 ? 1.0f : 0.5f) + Vec3(dx, dy, dz) / 4096.0f;
+        };
+        for (int k = 0; k < 4; ++k) {
+            const Vec3 ga = graze(point(0, edge)), gb = graze(point(0, edge)), gc = graze(point(0, edge));
+            cases[11].triangles.push_back({ga, gb, gc});
+        }
     }
     return cases;
 }
