@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// The subcommands, one file each. To add one: write `Command addName(CLI::App& program)` in name.cpp, declare it here and list it in lrsm.cpp.
+namespace lrsm {
+
+/// Exit codes: 0 done, 1 a check failed, 2 bad usage or input (InputError), 3 the machine failed us (MachineError).
+struct Command {
+    CLI::App* parser = nullptr;
+    std::function<int()> run;  ///< returns 0 or 1; bad input and machine trouble are thrown
+};
+
+Command addInfo(CLI::App& program);
+Command addRender(CLI::App& program);
+Command addSettings(CLI::App& program);
+
+}  // namespace lrsm

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/scene/requirements.h"
+#include "core/scene/scene.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <ostream>
+
+/// What is in a scene, for people and as JSON: shared by info, render and reference.
+namespace lrsm {
+
+/// Indented, ending in a newline; bytes that are no UTF-8 (file names may hold any) become U+FFFD.
+std::string jsonText(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json vectorJson(const Vec3& v);
+nlohmann::ordered_json cameraJson(const Camera& camera);
+nlohmann::ordered_json lightJson(const Light& light);
+/// Name, hash, counts, bounds, notes; the hash is `sha256` of the scene as loaded.
+nlohmann::ordered_json sceneJson(const Scene& scene, const std::string& sha256);
+nlohmann::ordered_json requirementsJson(const Requirements& needs);
+
+void printScene(std::ostream& out, const Scene& scene);
+void printRequirements(std::ostream& out, const Requirements& needs);
+
+}  // namespace lrsm

@@ -1,0 +1,112 @@
+#include "apps/commands.h"
+#include "apps/common_options.h"
+#include "apps/describe.h"
+#include "apps/frame_files.h"
+#include "apps/memory.h"
+#include "apps/progress.h"
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/scene/load_scene.h"
+#include "core/scene/scene_hash.h"
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace lrsm {
+
+namespace {
+
+struct Options : CommonOptions {
+    std::string output, pixel, exposure = "auto";
+    double maxMemoryMegabytes = 0.0;
+};
+
+std::optional<float> chosenExposure(const std::string& text)
+{
+    if (text == "auto") return {};
+    float stops = 0.0f;
+    if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f))
+        throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
+    return stops;
+}
+
+void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, const std::string& where)
+{
+    double all = 0.0;
+    for (const PassReport& pass : frame.passes) all += pass.milliseconds;
+    for (const PassReport& pass : frame.passes)
+        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::fixed << std::setprecision(1) << std::setw(9)
+                  << pass.milliseconds << " ms" << std::setw(7) << (all > 0.0 ? 100.0 * pass.milliseconds / all : 0.0) << " %" << std::setw(13)
+                  << megabytes(pass.bytes) << "\n";
+    std::cout << "  " << std::left << std::setw(12) << "frame" << std::right << std::setw(9) << all << " ms\n";
+    for (const MemoryRow& row : memory)
+        if (row.measured && *row.measured != row.predicted)
+            std::cout << "  " << row.structure << ": predicted " << megabytes(row.predicted) << ", held " << megabytes(*row.measured) << "\n";
+    std::cout << where << ": image.exr, image.png and one PNG a part, frame.json\n";
+}
+
+int run(const Options& options)
+{
+    if (options.output.empty() && options.pixel.empty()) throw InputError("render", "needs -o FOLDER (or --pixel x,y)");
+    const Settings settings = chosenSettings(options);
+    const IVec2 size = chosenSize(options);
+    const std::optional<float> exposure = chosenExposure(options.exposure);
+    if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
+    std::optional<IVec2> pixel;
+    if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
+    std::optional<OutputFolder> folder;
+    if (!options.output.empty()) folder.emplace(options.output);
+
+    const ThreadLimit threads(options.threads);
+    const Scene scene = loadChosenScene(options);
+    const Camera camera = chosenCamera(scene, options);
+    const Requirements needs = analyseRequirements(scene, settings.force);
+    enforceMemoryLimit(scene, needs, settings, size.x, size.y, options.maxMemoryMegabytes);
+
+    RenderOptions renderOptions{.width = size.x, .height = size.y, .hashPasses = true, .progress = {}};
+    if (pixel) std::cout << explainPixel(scene, camera, needs, settings, renderOptions, pixel->x, pixel->y);
+    if (!folder) return 0;
+
+    Progress progress(options.quiet);
+    renderOptions.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+    const Frame frame = renderFrame(scene, camera, needs, settings, renderOptions);
+    progress.show("writing", 0.0);
+
+    std::vector<int> layersKept;
+    for (const Frame::LightReport& light : frame.lights) layersKept.push_back(static_cast<int>(light.ranges.size()));
+    FrameRecord record{scene, camera, needs, settings, options.preset, hashScene(scene), predictMemory(settings, needs, layersKept, size.x, size.y), exposure};
+    addMeasured(record.memory, frame);
+    const nlohmann::ordered_json json = frameJson(frame, record);
+    writeFrame(*folder, frame, record, json);
+    folder->commit();
+    progress.clear();
+
+    if (options.json)
+        std::cout << jsonText(json);
+    else if (!options.quiet)
+        printSummary(frame, record.memory, folder->path().string());
+    return 0;
+}
+
+}  // namespace
+
+Command addRender(CLI::App& program)
+{
+    CLI::App* parser = program.add_subcommand("render", "Render a frame: EXR layers, PNGs, frame.json");
+    const auto options = std::make_shared<Options>();
+    addSceneOptions(*parser, *options);
+    addSettingOptions(*parser, *options);
+    addPictureOptions(*parser, *options);
+    addRunOptions(*parser, *options);
+    parser->add_option("-o,--output", options->output, "folder for the results; they appear whole or not at all");
+    parser->add_option("--pixel", options->pixel, "x,y: print how this pixel came about, cone by cone, step by step");
+    parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
+    parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; a frame that needs more is refused before it starts");
+    return {parser, [options] { return run(*options); }};
+}
+
+}  // namespace lrsm
