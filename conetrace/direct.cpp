@@ -100,7 +100,7 @@ float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, 
     const float cosine = std::max(1e-3f, glm::dot(nGeometric, toLight));
     const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
     // Depth is stored in float32 over the range: a few of its roundings are no occluder.
-    const float bias = depthBiasTexels * p.texelSize * (slope + kFlatBias) / q.depthRange() + 0x1p-21f;
+    const float bias = depthBiasTexels * p.texelSize * (std::min(slope, kMaxBiasSlope) + kFlatBias) / q.depthRange() + 0x1p-21f;
     return rsm.depthLinear.at(x, y) + bias < p.depth ? 0.0f : 1.0f;
 }
 

@@ -53,7 +53,7 @@ enum class Shadows { hard, cone, off };  ///< RSM depth comparison; shadow cone 
 
 struct DirectSettings {
     Shadows shadows = Shadows::hard;
-    float depthBiasTexels = 1.5f;         ///< hard: slope-scaled bias in RSM texels, >= 0
+    float depthBiasTexels = 0.75f;        ///< hard: slope-scaled bias in RSM texels, >= 0; half a texel's diagonal just covers a plane
     float shadowConeApertureDegrees = 2.0f;  ///< cone: full aperture, (0, 90]
     bool operator==(const DirectSettings&) const = default;
 };

@@ -143,7 +143,7 @@ TEST_CASE("hard shadows: equal to ray-cast shadows but for a rim of texels", "[c
         const LightSample sample = sampleLight(scene.lights[0], p);
         if (glm::dot(n, sample.toLight) <= 0.02f || sample.irradiance == Vec3(0.0f)) continue;
         const bool expected = litByRay(scene, sample, p, n);
-        const float visibility = shadowFromRsm(maps[0], p, n, sample.toLight, 1.5f);
+        const float visibility = shadowFromRsm(maps[0], p, n, sample.toLight, DirectSettings{}.depthBiasTexels);
         (expected ? lit : dark) += 1;
         acne += expected && visibility != 1.0f;
         leaks += !expected && visibility != 0.0f;
@@ -171,8 +171,8 @@ TEST_CASE("hard shadows: a lone plane never shadows itself, at any slant", "[con
             for (int i = 0; i < 40000; ++i) {
                 const Vec3 p(-3.99f + 7.98f * float(i % 200) / 199, 0, -3.99f + 7.98f * float(i / 200) / 199);
                 const LightSample sample = sampleLight(scene.lights[0], p);
-                if (sample.irradiance == Vec3(0.0f) || sample.toLight.y <= 0.02f) continue;
-                shadowed += shadowFromRsm(maps[0], p, {0, 1, 0}, sample.toLight, 1.5f) != 1.0f;
+                if (sample.irradiance == Vec3(0.0f) || sample.toLight.y <= 1 / kMaxBiasSlope) continue;
+                shadowed += shadowFromRsm(maps[0], p, {0, 1, 0}, sample.toLight, DirectSettings{}.depthBiasTexels) != 1.0f;
             }
             CAPTURE(slant, kind);
             CHECK(shadowed == 0);
