@@ -74,3 +74,24 @@ TEST_CASE("elementary functions at their edges", "[core][elementary]")
     CHECK(power(0.0, 2.4) == 0.0);
     CHECK(power(9.0, 0.5) == Approx(3.0).epsilon(1e-14));
 }
+
+TEST_CASE("arcTangent2 holds its bound in every quadrant and is exact on the axes", "[core][elementary]")
+{
+    std::mt19937_64 random(5);
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double scale = std::ldexp(1.0, static_cast<int>(random() % 60) - 30);
+        const double x = std::uniform_real_distribution<>(-scale, scale)(random), y = std::uniform_real_distribution<>(-1.0, 1.0)(random);
+        worst = std::max(worst, std::abs(static_cast<double>(Big(arcTangent2(y, x)) - atan2(Big(y), Big(x)))));
+    }
+    CAPTURE(worst);
+    CHECK(worst <= kArcTangentMaxError);
+    const double pi = 3.14159265358979323846;
+    CHECK(arcTangent2(0.0, 1.0) == 0.0);
+    CHECK(arcTangent2(1.0, 0.0) == pi / 2);
+    CHECK(arcTangent2(-1.0, 0.0) == -pi / 2);
+    CHECK(arcTangent2(0.0, -1.0) == pi);
+    CHECK(arcTangent2(0.0, 0.0) == 0.0);
+    CHECK(std::abs(arcTangent2(1.0, 1.0) - pi / 4) <= kArcTangentMaxError);
+    CHECK(std::isnan(arcTangent2(std::nan(""), 1.0)));
+}
