@@ -98,13 +98,8 @@ class SpanWalk {
         }
         const std::int64_t area =
             (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto& from = p[k];
-            const auto& to = p[(k + 1) % 3];
-            // Seen edge-on the triangle is a segment: both of its sides bound.
-            if (area >= 0) add(edgeHalfPlane<mode>(from, to, 1), firstRow);
-            if (area <= 0) add(edgeHalfPlane<mode>(from, to, -1), firstRow);
-        }
+        // Seen edge-on the triangle is a segment. Going round it passes the segment both ways, so both of its sides bound all the same.
+        for (std::size_t k = 0; k < 3; ++k) add(edgeHalfPlane<mode>(p[k], p[(k + 1) % 3], area >= 0 ? 1 : -1), firstRow);
         row_ = firstRow;
     }
 
@@ -144,7 +139,7 @@ class SpanWalk {
     std::int64_t row_ = 0;
     std::int64_t rowLo_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t rowHi_ = std::numeric_limits<std::int64_t>::max();
-    std::array<FloorWalk, 6> lower_, upper_;
+    std::array<FloorWalk, 3> lower_, upper_;
     int lowers_ = 0, uppers_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "voxel/voxelize_triangle.h"
 
 #include <atomic>
+#include <cassert>
 #include <utility>
 
 namespace lrsm {
@@ -17,15 +18,13 @@ struct QuotientRemainder {
     std::int64_t quotient, remainder;
 };
 
-QuotientRemainder divide(Int128 n, std::int64_t d)  // floor, d > 0; the quotient is a voxel coordinate near the grid
+/// Floor, d > 0. n / d is the plane's depth at a column that the triangle touches, so it lies within a few voxels of the triangle's own
+/// depths, |depth| <= 2^12 voxels; d, a normal's component, is at most (2^25)^2. Hence |n| < 2^63.
+QuotientRemainder divide(Int128 n, std::int64_t d)
 {
-    if (n == Int128(std::int64_t(n))) {
-        const std::int64_t q = floorDiv(std::int64_t(n), d);
-        return {q, std::int64_t(n) - q * d};
-    }
-    Int128 q = n / d;
-    if (n % d < 0) --q;
-    return {std::int64_t(q), std::int64_t(n - q * d)};
+    assert(n == Int128(std::int64_t(n)));
+    const std::int64_t q = floorDiv(std::int64_t(n), d);
+    return {q, std::int64_t(n) - q * d};
 }
 
 /// Plane test: voxel (i, j, k) passes where low <= n . (i, j, k) <= high.

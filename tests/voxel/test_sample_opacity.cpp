@@ -134,6 +134,45 @@ TEST_CASE("lookups equal a brute-force quadrilinear sum in double, border includ
     }
 }
 
+TEST_CASE("the order of operations is fixed: x, y, z, level, then the division by 255; bit for bit", "[voxel][sampler][determinism]")
+{
+    const auto lerp = [](float a, float b, float f) { return a + f * (b - a); };
+    for (const Kind& kind : allKinds()) {
+        if (kind.fraction == FilterFraction::fixed8) continue;
+        const OpacityPyramid pyramid = randomPyramid(kind, 32, 0.2, 8);
+        const float unit = kind.storage == Storage::gpu ? 255.0f : 1.0f;
+        const auto blend = [&](const Vec3& p, int level, int axis) {
+            const int n = pyramid.resolutionAt(level), channel = level > 0 && pyramid.channels() == 3 ? axis : 0;
+            float f[3], row[4];
+            int c[3];
+            for (int i = 0; i < 3; ++i) {
+                const float t = p[i] / float(1 << level) - 0.5f;
+                c[i] = int(std::floor(t));
+                f[i] = t - std::floor(t);
+            }
+            const auto texel = [&](int x, int y, int z) {
+                if (x < 0 || y < 0 || z < 0 || x >= n || y >= n || z >= n) return 0.0f;
+                const float value = pyramid.value(level, channel, x, y, z);
+                return kind.storage == Storage::gpu ? std::round(value * 255.0f) : value;
+            };
+            for (int k = 0; k < 4; ++k) row[k] = lerp(texel(c[0], c[1] + (k & 1), c[2] + k / 2), texel(c[0] + 1, c[1] + (k & 1), c[2] + k / 2), f[0]);
+            return lerp(lerp(row[0], row[1], f[1]), lerp(row[2], row[3], f[1]), f[2]) * densityScale(pyramid, level);
+        };
+        Random random;
+        int different = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const Vec3 p = random.point(-1.0f, 33.0f);
+            const float level = random(0.0f, 4.99f);
+            const int lower = int(level);
+            Vec3 expected;
+            for (int axis = 0; axis < 3; ++axis)
+                expected[axis] = lerp(blend(p, lower, axis), blend(p, lower + 1, axis), level - float(lower)) / unit;
+            different += !sameBits(expected, sampleOpacity(pyramid, p, level, kind.fraction));
+        }
+        CHECK(different == 0);
+    }
+}
+
 TEST_CASE("a texel's centre gives its stored value exactly; whole levels equal sampleLevel", "[voxel][sampler]")
 {
     for (const Kind& kind : allKinds()) {

@@ -137,6 +137,30 @@ TEST_CASE("conservative sets exactly the voxels whose closed box the closed tria
     }
 }
 
+TEST_CASE("triangles as large as the scene are exact too, though their rows are shared out among threads", "[voxel][conservative]")
+{
+    const int n = 256;
+    const VoxelFrame frame = unitFrame(n);
+    std::mt19937 random(21);
+    const Triangle triangles[] = {{Vec3(3.3f, 7.1f, 40.2f), Vec3(250.7f, 20.9f, 90.4f), Vec3(60.1f, 251.3f, 200.8f)},
+                                  {Vec3(-4000, -4000, -3793.6f), Vec3(4000, -4000, 3406.4f), Vec3(0, 4000, 206.4f)},
+                                  {Vec3(-4000, -3901, 3500), Vec3(4000, -2301, 3500), Vec3(0, 3549, -3500)}};
+    for (const Triangle& t : triangles) {
+        const BitGrid grid = voxelizeOne(t, frame, Voxelization::conservative);
+        REQUIRE(grid.countOccupied() > 10000);
+        const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], frame), oracle::snapped(t[1], frame), oracle::snapped(t[2], frame)};
+        int wrong = 0;
+        for (int i = 0; i < 150; ++i) {
+            const int x = int(random() % 256u), y = int(random() % 256u);
+            for (int z = 0; z < n; ++z) {
+                wrong += grid.occupied(x, y, z) != oracle::boxOverlap(exact, x, y, z);
+                wrong += grid.occupied(z, x, y) != oracle::boxOverlap(exact, z, x, y);
+            }
+        }
+        CHECK(wrong == 0);
+    }
+}
+
 TEST_CASE("thin is a subset of conservative and holds every voxel whose crosshair the triangle meets", "[voxel][thin]")
 {
     const int n = GENERATE(4, 16);
