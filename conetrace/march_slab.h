@@ -76,20 +76,26 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
             footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel),
                                       settings.filterFraction);
         ++counts.lrsmSamples;
-        const FilteredTexel texel = sampleLayer(lrsm, layer, *footprint);
-        if (!(texel.normalAlpha > 0.0f && texel.depthAlpha > 0.0f)) continue;
+
+        // The three textures are read one after the other: most samples are decided by depth or normal alone.
+        const LrsmTexel* texels = layerTexels(lrsm, layer);
+        const Float4 depth = sampleDepth(texels, *footprint);
+        if (!(depth[2] > 0.0f)) continue;
+        const Float4 normalSum = sampleNormal(texels, *footprint);
+        if (!(normalSum[3] > 0.0f)) continue;
 
         // Rate at which the sample crosses the surface; culled when it faces away.
-        const Vec3 normal = texel.normal / texel.normalAlpha;
-        const float nDotV = -glm::dot(normal, ray.direction), nDotL = glm::dot(normal, toLight);
+        const Vec3 normal = Vec3(normalSum[0], normalSum[1], normalSum[2]) / normalSum[3];
+        const float nDotV = -glm::dot(normal, ray.direction);
         if (!(nDotV > 0.0f)) continue;
-        const float rate = nDotV / std::max(nDotL, 1e-3f);
+        const float rate = nDotV / std::max(glm::dot(normal, toLight), 1e-3f);
 
-        // The layer's depths, in metres, blurred by the tap's own width.
-        const DepthMoments moments = depthMoments(texel, 0.0f);
+        // The layer's depths (Eq. 10, 11), in metres, blurred by the tap's own width.
+        const float warpedMean = depth[0] / depth[2];
+        const float warpedVariance = std::max(0.0f, depth[1] / depth[2] - warpedMean * warpedMean);
         const float scale = (bounds.depthMax - bounds.depthMin) * range;
-        const float mean = bounds.depthMin * range + moments.mean * scale;
-        const float sigma = std::sqrt(moments.variance * scale * scale + 0.25f * tap * tap);
+        const float mean = bounds.depthMin * range + warpedMean * scale;
+        const float sigma = std::sqrt(warpedVariance * scale * scale + 0.25f * tap * tap);
         const float e0 = zc - mean, h = 0.5f * rate * segment;
         if (std::abs(e0) - h > kNegligible * sigma) continue;
         const float weight = world.phi((e0 + h) / sigma) - world.phi((e0 - h) / sigma);
@@ -99,12 +105,14 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const float delay = (settings.emitterDelayTaps * step.tapWidth + settings.emitterDelayVoxels) / slant;
         const float transmittance =
             transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, index, step.middle - delay), settings);
-        const Vec3 outgoing = (transmittance * weight) * texel.radiance;
+        if (!(transmittance > 0.0f)) continue;
+
+        const Float4 radianceSum = sampleRadiance(texels, *footprint);
+        const Vec3 radiance(radianceSum[0], radianceSum[1], radianceSum[2]);
+        const Vec3 outgoing = (transmittance * weight) * radiance;
         emission += outgoing;
         if constexpr (Recorder::active)
-            recorder.layer(light,
-                           {layer, 1.0f, texel.radiance, texel.depthAlpha, rate, moments.mean, moments.variance, weight, outgoing},
-                           transmittance);
+            recorder.layer(light, {layer, 1.0f, radiance, depth[2], rate, warpedMean, warpedVariance, weight, outgoing}, transmittance);
     }
     return emission;
 }
