@@ -177,6 +177,7 @@ TEST_CASE("outside the map or behind the light nothing contributes, inside out n
     rsm.projection.resolution = 16;
     const Lrsm spot = buildLrsm(rsm, LayerSettings{});
     sample.centre = Vec3(0.0f, 0.0f, 3.0f);
+    sample.radius = 20.0f;  // would touch every layer
     CHECK(sampleLrsm(spot, sample, settings, phi, &terms) == Vec3(0.0f));
     CHECK(terms.empty());
 }
