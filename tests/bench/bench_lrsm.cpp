@@ -74,9 +74,9 @@ std::vector<ConeSample> randomSamples(const Aabb& bounds, std::size_t count)
     const auto uniform = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
     std::vector<ConeSample> samples(count);
     for (ConeSample& sample : samples) {
-        sample.centre = bounds.min + bounds.extent() * Vec3(uniform(), uniform(), uniform());
+        sample.centre = bounds.min + bounds.extent() * Vec3{uniform(), uniform(), uniform()};
         sample.radius = 0.02f + 1.5f * uniform() * uniform();
-        sample.toReceiver = glm::normalize(Vec3(uniform() - 0.5f, uniform() - 0.5f, uniform() - 0.5f) + Vec3(1e-3f));
+        sample.toReceiver = glm::normalize(Vec3{uniform() - 0.5f, uniform() - 0.5f, uniform() - 0.5f} + Vec3(1e-3f));
     }
     return samples;
 }

@@ -16,7 +16,7 @@ inline float uniform(std::mt19937& random, float lo = 0.0f, float hi = 1.0f)
 inline Vec3 unitVector(std::mt19937& random)
 {
     for (;;) {
-        const Vec3 v(uniform(random, -1.0f, 1.0f), uniform(random, -1.0f, 1.0f), uniform(random, -1.0f, 1.0f));
+        const Vec3 v{uniform(random, -1.0f, 1.0f), uniform(random, -1.0f, 1.0f), uniform(random, -1.0f, 1.0f)};  // {}: in this order
         const float length = glm::length(v);
         if (length > 0.1f && length <= 1.0f) return v / length;
     }
@@ -36,7 +36,7 @@ inline Rsm randomRsm(int resolution, unsigned seed, float filled = 0.8f, float n
         if (uniform(random) >= filled) continue;
         RsmTexel& texel = rsm.texels.texels[i];
         texel.coverage = 1.0f;
-        texel.radiance = Vec3(half(uniform(random, 0.0f, 4.0f)), half(uniform(random)), half(uniform(random, 0.0f, 0.01f)));
+        texel.radiance = Vec3{half(uniform(random, 0.0f, 4.0f)), half(uniform(random)), half(uniform(random, 0.0f, 0.01f))};
         const Vec3 n = unitVector(random);
         texel.normal = Vec3(half(n.x), half(n.y), half(n.z));
         texel.nDotL = half(uniform(random));

@@ -33,7 +33,7 @@ Lrsm randomLrsm(const LayerSettings& settings, unsigned seed, float filled = 0.8
 ConeSample randomSample(std::mt19937& random)
 {
     ConeSample sample;
-    sample.centre = Vec3(uniform(random, -2.1f, 2.1f), uniform(random, -2.0f, 2.0f), uniform(random, -2.1f, 2.1f));
+    sample.centre = Vec3{uniform(random, -2.1f, 2.1f), uniform(random, -2.0f, 2.0f), uniform(random, -2.1f, 2.1f)};
     sample.radius = std::ldexp(uniform(random, 0.5f, 1.0f), -static_cast<int>(random() % 7));
     sample.toReceiver = unitVector(random);
     return sample;
