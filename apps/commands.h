@@ -13,6 +13,8 @@ struct Command {
 };
 
 Command addInfo(CLI::App& program);
+Command addMerge(CLI::App& program);
+Command addReference(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addSettings(CLI::App& program);
 

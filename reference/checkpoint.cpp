@@ -119,8 +119,8 @@ SampleSums readSums(Reader& in, const std::string& place)
         if (block.sums.size() != sums.sums.size()) throw InputError(place, "is damaged: a block's size does not fit");
         sums.partial.push_back(std::move(block));
     }
-    const bool fits = sums.channels > 0 && sums.blockBits >= 0 && sums.blockBits <= 12 && sums.squares.size() == sums.sums.size() &&
-                      sums.sums.size() % std::size_t(sums.channels) == 0;
+    const bool fits = sums.channels >= (sums.sums.empty() ? 0 : 1) && sums.blockBits >= 0 && sums.blockBits <= 12 && sums.squares.size() == sums.sums.size() &&
+                      sums.sums.size() % std::size_t(std::max(sums.channels, 1)) == 0;
     if (!fits) throw InputError(place, "is damaged: its sizes do not fit");
     return sums;
 }
@@ -144,6 +144,7 @@ std::vector<std::byte> encodeCheckpoint(const Checkpoint& checkpoint)
     out.value(state.invalidSamples);
     out.value(state.finished() ? 0.0 : state.seconds);
     writeSums(out, state.sums);
+    writeSums(out, state.base);
 
     const std::string hash = Sha256().add(out.bytes).hex();
     out.raw(hash.data(), hash.size());
@@ -173,6 +174,7 @@ Checkpoint decodeCheckpoint(const std::vector<unsigned char>& bytes, const std::
     checkpoint.state.invalidSamples = in.value<std::uint64_t>();
     checkpoint.state.seconds = in.value<double>();
     checkpoint.state.sums = readSums(in, place);
+    checkpoint.state.base = readSums(in, place);
     return checkpoint;
 }
 

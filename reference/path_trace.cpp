@@ -206,6 +206,16 @@ ReferenceState PathTracer::start(SampleRange range) const
     return state;
 }
 
+void PathTracer::extend(ReferenceState& state, SampleRange range) const
+{
+    ReferenceState next = start(range);
+    next.base = std::move(state.sums);
+    next.rays = state.rays;
+    next.invalidSamples = state.invalidSamples;
+    next.seconds = state.seconds;
+    state = std::move(next);
+}
+
 bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, const std::atomic<bool>* stop) const
 {
     const Clock::time_point begun = Clock::now();
@@ -260,7 +270,11 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
     }
     state.seconds += std::chrono::duration<double>(Clock::now() - begun).count();
     const bool done = std::all_of(state.chunkBlocks.begin(), state.chunkBlocks.end(), [&](std::uint32_t blocks) { return blocks == segments; });
-    if (done && state.sums.ranges.empty() && state.target.size() > 0) state.sums.ranges = {state.target};
+    if (done && !state.finished() && state.target.size() > 0) {
+        state.sums.ranges = {state.target};
+        if (!state.base.ranges.empty()) mergeSums(state.sums, state.base, "samples");
+        state.base = {};
+    }
     return done;
 }
 
@@ -273,16 +287,33 @@ double PathTracer::progress(const ReferenceState& state)
     return double(done) / (double(segments) * double(state.chunkBlocks.size()));
 }
 
-std::vector<RecordedRay> PathTracer::recordRays(std::size_t limitPixels) const
+BareLoop PathTracer::timeBareLoop(std::size_t stride) const
 {
-    std::vector<RecordedRay> rays;
-    Tracer tracer(embree_, lights_, &rays);
-    for (std::size_t i = 0; i < std::min(limitPixels, primary_.covered.texels.size()); ++i) {
-        if (!primary_.covered.texels[i]) continue;
-        const PixelSampler sampler({std::uint32_t(i), 0, settings_.blockBits, keyOf(settings_.seed)}, settings_, primary_.surface.texels[i], primary_.toEye.texels[i], channels());
-        for (std::uint32_t index = 0; index < (1u << settings_.blockBits); ++index) sampler.draw(tracer, index);
-    }
-    return rays;
+    const std::size_t pixels = primary_.covered.texels.size();
+    std::vector<std::vector<RecordedRay>> chunks((chunkCount(pixels) + stride - 1) / stride);
+    parallelFor(chunks.size(), 1, [&](std::size_t number, std::size_t) {
+        Tracer tracer(embree_, lights_, &chunks[number]);
+        const std::size_t first = number * stride * kChunkPixels;
+        for (std::size_t i = first; i < std::min(first + kChunkPixels, pixels); ++i) {
+            if (!primary_.covered.texels[i]) continue;
+            const PixelSampler sampler({std::uint32_t(i), 0, settings_.blockBits, keyOf(settings_.seed)}, settings_, primary_.surface.texels[i],
+                                       primary_.toEye.texels[i], channels());
+            for (std::uint32_t index = 0; index < (1u << settings_.blockBits); ++index) sampler.draw(tracer, index);
+        }
+    });
+
+    BareLoop result;
+    for (const auto& rays : chunks) result.rays += rays.size();
+    std::atomic<std::uint64_t> hits = 0;  // uses the answers, so that no query is dropped
+    const Clock::time_point begun = Clock::now();
+    parallelFor(chunks.size(), 1, [&](std::size_t number, std::size_t) {
+        std::uint64_t here = 0;
+        for (const RecordedRay& recorded : chunks[number])
+            here += recorded.shadow ? embree_.occluded(recorded.ray) : embree_.closestHit(recorded.ray).has_value();
+        hits += here;
+    });
+    result.seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+    return result;
 }
 
 ReferenceFrame PathTracer::resolve(const SampleSums& sums) const

@@ -49,10 +49,11 @@ struct PrimaryHits {
     Image<Vec3> direct;                ///< radiance towards the eye: every light, one shadow ray each, diffuse and specular
 };
 
-/// What has been rendered so far of one sample range. The state of a chunk of pixels is how many of the range's blocks it has seen.
+/// What has been rendered so far. The progress of a chunk of pixels is how many of the target range's blocks it has seen.
 struct ReferenceState {
     SampleRange target;
     SampleSums sums;                        ///< of the target range; `ranges` is filled in when finished
+    SampleSums base;                        ///< finished earlier, joined to `sums` when the target is finished; no ranges: none
     std::vector<std::uint32_t> chunkBlocks;
     RayCounts rays;
     std::uint64_t invalidSamples = 0;       ///< NaN or infinite contributions, counted as 0
@@ -74,10 +75,16 @@ struct ReferenceFrame {
     std::uint64_t samples = 0;
 };
 
-/// A ray of the last pass, for timing a bare loop.
+/// A ray as it was traced.
 struct RecordedRay {
     Ray ray;
     bool shadow = false;
+};
+
+/// How fast the same kind of rays go when nothing else is done: what shading, sampling and sums cost is seen against it.
+struct BareLoop {
+    std::uint64_t rays = 0;
+    double seconds = 0.0;
 };
 
 class PathTracer {
@@ -93,6 +100,8 @@ class PathTracer {
     int channels() const;
 
     ReferenceState start(SampleRange range) const;
+    /// Adds a range to a finished state.
+    void extend(ReferenceState& state, SampleRange range) const;
     /// Renders until the range is done (true), `stop` is set, or the deadline has passed; what a started chunk does is kept.
     bool advance(ReferenceState& state, std::chrono::steady_clock::time_point deadline, const std::atomic<bool>* stop = nullptr) const;
     /// Fraction of the target range done, [0, 1].
@@ -101,8 +110,8 @@ class PathTracer {
     ReferenceFrame resolve(const SampleSums& sums) const;
     double unit() const { return unit_; }
 
-    /// The rays that the first `limit` pixels' first block shoots, in order.
-    std::vector<RecordedRay> recordRays(std::size_t limitPixels) const;
+    /// Traces the rays of every `stride`-th chunk's first block again, with nothing but the ray queries inside the clock.
+    BareLoop timeBareLoop(std::size_t stride) const;
 
   private:
     void shootPrimary(const Camera& camera);
