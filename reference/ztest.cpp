@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace lrsm {
+namespace {
+
+constexpr double kStorage = 0x1p-22;  // relative; two roundings of a mean and one of its variance
+
+}  // namespace
 
 ZTest zTest(const Image<Vec3>& reference, const Image<Vec3>& test, const Image<Vec3>& variance, const PixelMask& valid)
 {
@@ -17,8 +22,9 @@ ZTest zTest(const Image<Vec3>& reference, const Image<Vec3>& test, const Image<V
             ++all;
             variances += v;
             sum += r;
-            if (!(v > 0.0)) {
-                result.certain += difference != 0.0;
+            // Below what float32 storage can tell apart there is no noise to measure by.
+            if (!(v > kStorage * kStorage * r * r) || !(v > 0.0)) {
+                result.certain += std::abs(difference) > kStorage * std::abs(r);
                 continue;
             }
             const double z2 = difference * difference / v;
