@@ -17,8 +17,8 @@ enum class MipFilter { mean, coverage, max };
 enum class OpacityAxes { isotropic, directional };  ///< one opacity a voxel, or an area density along each axis
 
 struct VoxelSettings {
-    int resolution = 128;  ///< voxels along an edge, power of two, 1..2048
-    Voxelization mode = Voxelization::conservative;
+    int resolution = 512;  ///< voxels along an edge, power of two, 1..2048
+    Voxelization mode = Voxelization::thin;
     MipFilter mipFilter = MipFilter::mean;
     OpacityAxes axes = OpacityAxes::directional;
     Storage storage = Storage::gpu;
@@ -76,7 +76,7 @@ struct ConeSettings {
 
     // March.
     float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
-    float startVoxels = 1.5f;           ///< first sample's distance along the cone, base voxels, >= 0
+    float startVoxels = 3.0f;           ///< first sample's distance along the cone, base voxels, >= 0
     float normalOffsetVoxels = 1.0f;    ///< origin off the surface along the geometric normal, base voxels, >= 0
     float minDiameterVoxels = 1.0f;     ///< smallest sphere diameter, base voxels, > 0
     float push = 0.0f;                  ///< sphere centre moved along the receiver's normal, in sphere radii, >= 0
