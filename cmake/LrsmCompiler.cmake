@@ -7,6 +7,8 @@ target_compile_options(lrsm_compiler INTERFACE -Wall -Wextra -Wshadow -Wconversi
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
   target_compile_options(lrsm_compiler INTERFACE -Wno-restrict)
 endif()
+# ccache can only remember units with a precompiled header when the preprocessed text still names it.
+target_compile_options(lrsm_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 if(LRSM_WARNINGS_AS_ERRORS)
   target_compile_options(lrsm_compiler INTERFACE -Werror)
 endif()

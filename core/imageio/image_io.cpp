@@ -79,14 +79,14 @@ LayeredImage splitIntoLayers(const OIIO::ImageSpec& spec, const std::vector<floa
     image.height = spec.height;
     std::vector<std::vector<std::size_t>> sources;  // of each layer: its channels in the file
     for (std::size_t c = 0; c < spec.channelnames.size(); ++c) {
-        const auto [layerName, channelName] = splitChannel(spec.channelnames[c]);
-        auto layer = std::find_if(image.layers.begin(), image.layers.end(), [&](const ImageLayer& l) { return l.name == layerName; });
+        const auto names = splitChannel(spec.channelnames[c]);
+        auto layer = std::find_if(image.layers.begin(), image.layers.end(), [&](const ImageLayer& l) { return l.name == names.first; });
         if (layer == image.layers.end()) {
-            image.layers.push_back({layerName, {}, {}});
+            image.layers.push_back({names.first, {}, {}});
             sources.emplace_back();
             layer = image.layers.end() - 1;
         }
-        layer->channelNames.push_back(channelName);
+        layer->channelNames.push_back(names.second);
         sources[static_cast<std::size_t>(layer - image.layers.begin())].push_back(c);
     }
     const std::size_t all = spec.channelnames.size(), count = pixels.size() / all;
