@@ -301,6 +301,17 @@ TEST_CASE("single-sided: the eye sees fronts, light passes backs, everything els
     CHECK_FALSE(hit->front);
 }
 
+TEST_CASE("light from behind the triangle is not let in by a tilted shading normal", "[reference][sides]")
+{
+    // A sheet facing +z whose vertex normals lean towards +x; the lamp stands at +x, below the sheet's plane.
+    Scene scene = makeScene({rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0})}, {diffuse(Vec3(0.5f), false)}, {sun({-1, 0, 0.2f}, 1.0f)});
+    scene.meshes[0].normals.assign(4, glm::normalize(Vec3(1, 0, 0.8f)));
+    const Camera camera = lookAt({0.3f, 0, 1}, {0, 0, 0}, 0.01f);
+    CHECK(renderReference(scene, camera, {.width = 1, .height = 1}, 1).direct.texels[0] == Vec3(0.0f));
+    scene.lights = {sun({-1, 0, -0.2f}, 1.0f)};
+    CHECK(renderReference(scene, camera, {.width = 1, .height = 1}, 1).direct.texels[0].g > 0.0f);
+}
+
 TEST_CASE("alpha-masked texels let every kind of ray through", "[reference][alpha]")
 {
     Scene scene = makeScene({rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), rectangle({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, 1)},
