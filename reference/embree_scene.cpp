@@ -133,8 +133,9 @@ std::optional<RayHit> EmbreeScene::closestHit(const Ray& ray) const
 #endif
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const RTCHit& hit = query.hit;
-    const bool front = hit.Ng_x * ray.direction.x + hit.Ng_y * ray.direction.y + hit.Ng_z * ray.direction.z < 0.0f;
-    return RayHit{{hit.geomID, hit.primID, hit.u, hit.v}, query.ray.tfar, front};
+    const Vec3 normal(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+    const bool front = glm::dot(normal, ray.direction) < 0.0f;
+    return RayHit{{hit.geomID, hit.primID, hit.u, hit.v}, query.ray.tfar, front, front ? normal : -normal};
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const

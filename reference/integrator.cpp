@@ -11,6 +11,35 @@ bool reflects(const Scene& scene, const RayHit& hit)
     return hit.front || scene.materials[static_cast<std::size_t>(scene.meshes[hit.surface.mesh].material)].doubleSided;
 }
 
+/// Where a ray struck, without the material. As interpolated by evaluateSurface.
+Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
+{
+    const Mesh& mesh = scene.meshes[hit.mesh];
+    const auto& triangle = mesh.triangles[hit.triangle];
+    return (1.0f - hit.b1 - hit.b2) * mesh.positions[triangle[0]] + hit.b1 * mesh.positions[triangle[1]] + hit.b2 * mesh.positions[triangle[2]];
+}
+
+/// Radiance of a diffuse surface towards the ray. Most points are in shadow: the shadow rays go first, and the material is looked up only
+/// where light arrives.
+Vec3 diffuseRadiance(Tracer& tracer, const Ray& ray, const RayHit& hit)
+{
+    const float length2 = glm::dot(hit.scaledNormal, hit.scaledNormal);
+    if (!(length2 > 0.0f)) return Vec3(0.0f);
+    const Vec3 geometricNormal = hit.scaledNormal / std::sqrt(length2), position = positionOf(tracer.scene(), hit.surface);
+    const Vec3 start = position + geometricNormal * tracer.offset(position);
+
+    Vec3 radiance(0.0f);
+    std::optional<Surface> surface;
+    for (const LightSampler& light : tracer.lights()) {
+        const LightSample sample = light(position);
+        if (sample.irradiance == Vec3(0.0f) || !(glm::dot(geometricNormal, sample.toLight) > 0.0f)) continue;
+        if (tracer.occluded({start, sample.toLight, 0.0f, sample.distance, RayKind::light})) continue;
+        if (!surface) surface = evaluateSurface(tracer.scene(), hit.surface, -ray.direction);
+        radiance += surface->albedo / kPi * std::max(0.0f, glm::dot(surface->normal, sample.toLight)) * sample.irradiance;
+    }
+    return radiance;
+}
+
 float brightest(const Vec3& v)
 {
     return std::max({v.x, v.y, v.z});
@@ -56,7 +85,7 @@ Ray rayFrom(const Tracer& tracer, const Surface& surface, const Vec3& direction,
     return {surface.position + surface.geometricNormal * tracer.offset(surface.position), direction, 0.0f, kInfinity, kind};
 }
 
-Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, Lobes lobes)
+Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer)
 {
     Vec3 sum(0.0f);
     for (const LightSampler& light : tracer.lights()) {
@@ -65,8 +94,7 @@ Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, L
         const float cosine = glm::dot(surface.normal, sample.toLight);
         if (!(cosine > 0.0f && glm::dot(surface.geometricNormal, sample.toLight) > 0.0f)) continue;
 
-        Vec3 reflected = surface.albedo * (cosine / kPi);
-        if (lobes == Lobes::all) reflected += evaluateSpecular(surface, sample.toLight, toViewer);
+        const Vec3 reflected = surface.albedo * (cosine / kPi) + evaluateSpecular(surface, sample.toLight, toViewer);
         if (reflected == Vec3(0.0f)) continue;
         Ray shadow = rayFrom(tracer, surface, sample.toLight, RayKind::light);
         shadow.tFar = sample.distance;
@@ -85,11 +113,11 @@ Vec3 incomingRadiance(Tracer& tracer, const Ray& first, Transport transport, Pat
         if (bounce == 1) hitAnything = hit.has_value();
         if (!hit || !reflects(tracer.scene(), *hit)) return radiance;
 
+        if (transport == Transport::single) return diffuseRadiance(tracer, ray, *hit);
+
         const Vec3 toViewer = -ray.direction;
         const Surface surface = evaluateSurface(tracer.scene(), hit->surface, toViewer);
-        if (transport == Transport::single) return directLight(tracer, surface, toViewer, Lobes::diffuse);
-
-        radiance += throughput * directLight(tracer, surface, toViewer, Lobes::all);
+        radiance += throughput * directLight(tracer, surface, toViewer);
         const Philox4 words = random.next();
         const Continuation next = continuePath(surface, toViewer, words);
         throughput *= next.weight;

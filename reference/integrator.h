@@ -56,11 +56,9 @@ class Tracer {
     std::vector<RecordedRay>* record_;
 };
 
-enum class Lobes { diffuse, all };
-
 /// Radiance that `surface` sends towards `toViewer` straight from the lights: sum over lights of (albedo / pi <n.l> + f_s <n.l>) E V, one
 /// shadow ray where the light reaches the front of both the shading and the geometric plane. W/(m^2 sr).
-Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, Lobes lobes);
+Vec3 directLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer);
 
 /// Radiance arriving along -ray.direction. `hitAnything` says whether the ray met a surface.
 Vec3 incomingRadiance(Tracer& tracer, const Ray& ray, Transport transport, PathRandom& random, bool& hitAnything);

@@ -178,7 +178,7 @@ void PathTracer::shootPrimary(const Camera& camera)
             primary_.toEye.texels[i] = -eye.direction;
             primary_.surface.texels[i] = evaluateSurface(scene_, hit->surface, -eye.direction);
             primary_.depth.texels[i] = glm::dot(primary_.surface.texels[i].position - camera.position, camera.forward);
-            primary_.direct.texels[i] = directLight(tracer, primary_.surface.texels[i], -eye.direction, Lobes::all);
+            primary_.direct.texels[i] = directLight(tracer, primary_.surface.texels[i], -eye.direction);
         }
         const std::lock_guard lock(countsMutex);  // integers: any order gives the same sum
         primaryRays_.eye += tracer.counts.eye;
