@@ -38,7 +38,7 @@ enum class LayerSelection {
 };
 
 struct LayerSettings {
-    int depthLayers = 3;    ///< a + 1, 1..16
+    int depthLayers = 2;    ///< a + 1, 1..16
     int normalLayers = 2;   ///< b + 1, 1..8, equal slices of <n.l>
     float overlap = 0.0f;   ///< delta of Eq. 15 as a fraction of a depth slice, [0, 0.5]
     bool fitRanges = true;  ///< depth ranges fitted to the RSM's valid texels; false: equal slices of the light's whole range

@@ -56,6 +56,7 @@ Settings accurate()
     Settings s;
     s.voxel.resolution = 1024;
     s.rsm.resolution = 2048;
+    s.layers.depthLayers = 3;
     s.cones.count = 32;
     s.cones.startVoxels = 4.0f;
     s.cones.emitterDelayTaps = 3.0f;
