@@ -2,7 +2,8 @@
 # The accuracy table of docs/accuracy.md: every scene under every preset against the path tracer, on `irradiance`.
 #   scripts/accuracy.sh [SIZE [SPP [OUT]]]      default 640x360, 512, out/accuracy
 # Scenes: the built-ins, and the views in $LRSM_SCENES/views (default ../shared/scenes) where they exist. References are kept and
-# reused; delete OUT to make them anew. RMSE/mean is printed as measured; "noise" is the truth's own share of it, from its stored variance.
+# reused; delete OUT to make them anew. "RMSE/mean" is as measured; "noise" is the truth's own share of it, from its stored variance; "net" is
+# the rest, sqrt(RMSE^2 - noise^2).
 set -eu
 cd "$(dirname "$0")/.."
 size=${1:-640x360}
@@ -23,8 +24,8 @@ value() { sed -n "s/.*\"$2\": \([-0-9.e+]*\),*$/\1/p" "$1" | head -n 1 | awk -v 
 mkdir -p "$out"
 table=$out/table.md
 {
-    echo "| scene | preset | energy | RMSE/mean | noise | MAE/mean | FLIP | frame ms |"
-    echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
+    echo "| scene | preset | energy | RMSE/mean | noise | net | MAE/mean | FLIP | frame ms |"
+    echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 } >"$table"
 for scene in $scenes; do
     name=$(basename "$scene" .json)
@@ -32,7 +33,7 @@ for scene in $scenes; do
     if [ ! -f "$reference/frame.json" ]; then
         echo "accuracy: reference of $name, $spp samples a pixel" >&2
         mkdir -p "$out/reference"
-        "$lrsm" reference "$scene" --size "$size" --spp "$spp" -o "$reference" --quiet >/dev/null
+        "$lrsm" reference "$scene" --size "$size" --spp "$spp" --block 64 -o "$reference" --quiet >/dev/null
     fi
     for preset in $presets; do
         echo "accuracy: $name, $preset" >&2
@@ -40,7 +41,10 @@ for scene in $scenes; do
         "$lrsm" render "$scene" --preset "$preset" --size "$size" -o "$out/$preset/$name" --quiet >/dev/null
         "$lrsm" compare "$out/$preset/$name" "$reference" -o "$out/compare/$preset/$name" --quiet >/dev/null
         json=$out/compare/$preset/$name/compare.json
-        echo "| $name | $preset | $(value "$json" energy_ratio %.2f) | $(value "$json" rmse_over_mean %.3f) | $(value "$json" noise_rmse_over_mean %.3f) |" \
+        rmse=$(value "$json" rmse_over_mean %.3f)
+        noise=$(value "$json" noise_rmse_over_mean %.3f)
+        net=$(awk -v r="$rmse" -v n="$noise" 'BEGIN { printf "%.3f", r > n ? sqrt(r * r - n * n) : 0 }')
+        echo "| $name | $preset | $(value "$json" energy_ratio %.2f) | $rmse | $noise | $net |" \
             "$(value "$json" mae_over_mean %.3f) | $(value "$json" mean %.3f) | $(value "$out/$preset/$name/frame.json" milliseconds %.0f) |" >>"$table"
     done
 done

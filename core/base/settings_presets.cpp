@@ -59,7 +59,8 @@ Settings accurate()
     s.layers.depthLayers = 3;
     s.cones.count = 32;
     s.cones.startVoxels = 4.0f;
-    s.cones.emitterDelayTaps = 3.0f;
+    s.cones.emitterDelayTaps = 3.5f;
+    s.cones.emitterSlantCap = 0.25f;
     return s;
 }
 
