@@ -7,48 +7,53 @@
 namespace lrsm {
 namespace {
 
-constexpr int kPolar = 24, kAzimuth = 24;
+constexpr int kPolar = 48, kAzimuth = 24;    // over half the lobe: it is symmetric about the plane of n and v
 constexpr float kSmallestRoughness = 0.05f;  // a narrower lobe's albedo differs by less than the quadrature's own error
+constexpr float kSmallestCosine = 0.002f;
 
-/// Integrates the lobe by stratified points of its own microfacet normals: sum of f_s <n.l> / pdf, pdf = D <n.h> / (4 <v.h>).
-float integrateLobe(const Surface& surface, float nDotV)
+/// Directional albedo for F0 = 1 and F0 = 1/2, by stratified points of the lobe's own microfacet normals: mean of f_s <n.l> / pdf,
+/// pdf = D <n.h> / (4 <v.h>).
+Vec2 integrateLobe(float roughness, float nDotV)
 {
+    Surface surface;
+    surface.normal = surface.geometricNormal = Vec3(0, 0, 1);
+    surface.specularColor = Vec3(1.0f, 0.5f, 0.5f);
+    surface.roughness = roughness;
     const Vec3 v(std::sqrt(std::max(0.0f, 1.0f - nDotV * nDotV)), 0.0f, nDotV);
-    const float alpha = surface.roughness * surface.roughness, a2 = alpha * alpha;
-    double sum = 0.0;
+    const float alpha = roughness * roughness, a2 = alpha * alpha;
+    double full = 0.0, half = 0.0;
     for (int i = 0; i < kPolar; ++i) {
-        const float u = (static_cast<float>(i) + 0.5f) / kPolar;
+        // u = 1 - rest^2 is uniform under the lobe's own density: more points, of less weight, in its long tail.
+        const float rest = (static_cast<float>(i) + 0.5f) / kPolar, u = 1.0f - rest * rest, weight = 2.0f * rest;
         const float cosH = std::sqrt((1.0f - u) / (1.0f + (a2 - 1.0f) * u)), sinH = std::sqrt(std::max(0.0f, 1.0f - cosH * cosH));
         for (int k = 0; k < kAzimuth; ++k) {
-            const SinCos phi = sinCos(2.0 * 3.14159265358979323846 * (k + 0.5) / kAzimuth);
+            const SinCos phi = sinCos(3.14159265358979323846 * (k + 0.5) / kAzimuth);
             const Vec3 h(sinH * float(phi.cos), sinH * float(phi.sin), cosH);
             const float vDotH = glm::dot(v, h);
             const Vec3 l = 2.0f * vDotH * h - v;
             if (!(vDotH > 0.0f && l.z > 0.0f)) continue;
             const float q = cosH * cosH * (a2 - 1.0f) + 1.0f, density = a2 / (kPi * q * q);
             const float pdf = density * cosH / (4.0f * vDotH);
-            sum += double(evaluateSpecular(surface, l, v).x / pdf);
+            const Vec3 reflected = evaluateSpecular(surface, l, v) * (weight / pdf);
+            full += double(reflected.x);
+            half += double(reflected.y);
         }
     }
-    return static_cast<float>(sum / (kPolar * kAzimuth));
+    return Vec2(float(full / (kPolar * kAzimuth)), float(half / (kPolar * kAzimuth)));
 }
 
 }  // namespace
 
-SpecularAlbedo::SpecularAlbedo() : table_(kSize * kSize)
+SpecularAlbedo::SpecularAlbedo() : table_(kRoughnessSize * kCosineSize)
 {
-    parallelFor(kSize, 1, [&](std::size_t begin, std::size_t end) {
+    parallelFor(kRoughnessSize, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t r = begin; r < end; ++r) {
-            for (int i = 0; i < kSize; ++i) {
-                Surface surface;
-                surface.normal = surface.geometricNormal = Vec3(0, 0, 1);
-                surface.roughness = std::max(kSmallestRoughness, static_cast<float>(r) / (kSize - 1));
-                const float nDotV = std::max(0.02f, static_cast<float>(i) / (kSize - 1));
-                surface.specularColor = Vec3(1.0f);
-                const float full = integrateLobe(surface, nDotV);
-                surface.specularColor = Vec3(0.5f);
-                const float half = integrateLobe(surface, nDotV);
-                table_[r * kSize + std::size_t(i)] = Vec2(2.0f * (full - half), full - 2.0f * (full - half));
+            const float roughness = std::max(kSmallestRoughness, static_cast<float>(r) / (kRoughnessSize - 1));
+            for (int i = 0; i < kCosineSize; ++i) {
+                const float root = static_cast<float>(i) / (kCosineSize - 1);
+                const Vec2 albedo = integrateLobe(roughness, std::max(kSmallestCosine, root * root));
+                const float scale = 2.0f * (albedo.x - albedo.y);
+                table_[r * kCosineSize + std::size_t(i)] = Vec2(scale, albedo.x - scale);
             }
         }
     });
@@ -56,11 +61,12 @@ SpecularAlbedo::SpecularAlbedo() : table_(kSize * kSize)
 
 Vec3 SpecularAlbedo::operator()(const Vec3& specularColor, float nDotV, float roughness) const
 {
-    const float x = std::clamp(nDotV, 0.0f, 1.0f) * (kSize - 1), y = std::clamp(roughness, 0.0f, 1.0f) * (kSize - 1);
-    const int x0 = std::min(static_cast<int>(x), kSize - 2), y0 = std::min(static_cast<int>(y), kSize - 2);
+    const float x = std::sqrt(std::clamp(nDotV, 0.0f, 1.0f)) * (kCosineSize - 1);
+    const float y = std::clamp(roughness, 0.0f, 1.0f) * (kRoughnessSize - 1);
+    const int x0 = std::min(static_cast<int>(x), kCosineSize - 2), y0 = std::min(static_cast<int>(y), kRoughnessSize - 2);
     const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
-    const Vec2* row = table_.data() + y0 * kSize + x0;
-    const Vec2 top = row[0] * (1.0f - fx) + row[1] * fx, bottom = row[kSize] * (1.0f - fx) + row[kSize + 1] * fx;
+    const Vec2* row = table_.data() + y0 * kCosineSize + x0;
+    const Vec2 top = row[0] * (1.0f - fx) + row[1] * fx, bottom = row[kCosineSize] * (1.0f - fx) + row[kCosineSize + 1] * fx;
     const Vec2 scaleBias = top * (1.0f - fy) + bottom * fy;
     return glm::clamp(specularColor * scaleBias.x + scaleBias.y, 0.0f, 1.0f);
 }
