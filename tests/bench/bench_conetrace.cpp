@@ -1,6 +1,5 @@
-// Throughput of what follows the G-buffer: cones in cone samples (steps), filter and composite in pixels; and a whole frame, each pass as its
-// share. Items are what the name says; counters give the same run in other units. Times are CPU times of all threads together where
-// stated so: on a shared machine they are the steadier half.
+// Throughput of what follows the G-buffer: cones in cone samples (steps), shadow cones, filter and composite in pixels; and a whole frame, each
+// pass with its share. Rates are per second of CPU time, all threads together: of one core, and steady on a shared machine.
 #include "conetrace/composite.h"
 #include "conetrace/direct.h"
 #include "conetrace/irradiance_filter.h"
@@ -72,7 +71,7 @@ void cones(benchmark::State& state)
     state.counters["steps a cone"] = double(counts.steps) / double(counts.cones);
     state.SetLabel(std::string(kScenes[state.range(0)]) + (state.range(1) ? ", slab (balanced)" : ", paper (literal)"));
 }
-BENCHMARK(cones)->ArgNames({"scene", "slab"})->ArgsProduct({{0, 1, 2}, {1, 0}})->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(cones)->ArgNames({"scene", "slab"})->ArgsProduct({{0, 1, 2}, {1, 0}})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 void shadowCones(benchmark::State& state)
 {
@@ -83,7 +82,7 @@ void shadowCones(benchmark::State& state)
     state.SetItemsProcessed(state.iterations() * kWidth * kHeight);
     state.SetLabel(std::string(kScenes[state.range(0)]) + ", pixels");
 }
-BENCHMARK(shadowCones)->ArgName("scene")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(shadowCones)->ArgName("scene")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 /// Any irradiance will do: the filter's work depends on the G-buffer alone.
 void irradianceFilter(benchmark::State& state)
@@ -94,7 +93,7 @@ void irradianceFilter(benchmark::State& state)
     state.SetItemsProcessed(state.iterations() * 1280 * 720);
     state.SetLabel(std::string(kScenes[state.range(0)]) + ", pixels");
 }
-BENCHMARK(irradianceFilter)->ArgName("scene")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(irradianceFilter)->ArgName("scene")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 /// Shading of both indirect parts and the sum; with a specular part the lobe's albedo table is made too, as in every frame.
 void compositePass(benchmark::State& state)
@@ -109,7 +108,7 @@ void compositePass(benchmark::State& state)
     state.SetItemsProcessed(state.iterations() * 1280 * 720);
     state.SetLabel(std::string(kScenes[state.range(0)]) + ", pixels");
 }
-BENCHMARK(compositePass)->ArgName("scene")->Arg(0)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(compositePass)->ArgName("scene")->Arg(0)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 /// Each pass's share of the frame, in percent, summed over the iterations.
 void wholeFrame(benchmark::State& state)
@@ -132,7 +131,7 @@ void wholeFrame(benchmark::State& state)
     state.SetItemsProcessed(state.iterations() * kWidth * kHeight);
     state.SetLabel(std::string(kScenes[state.range(0)]) + (state.range(1) ? ", balanced" : ", literal"));
 }
-BENCHMARK(wholeFrame)->ArgNames({"scene", "slab"})->ArgsProduct({{0, 1}, {1, 0}})->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(wholeFrame)->ArgNames({"scene", "slab"})->ArgsProduct({{0, 1}, {1, 0}})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace
 
