@@ -13,7 +13,8 @@
 ///
 ///     w = Phi((z_c - mu + g dt / 2) / s) - Phi((z_c - mu - g dt / 2) / s),      I = sum over segments of T w A R,
 ///
-/// one term for both V and N. The w of consecutive segments telescope: an infinite wall gives exactly L for any step, angle or light direction.
+/// one term for both V and N. The w of consecutive segments telescope: while s is constant, an infinite wall gives exactly L for any step or angle
+/// (docs/pipeline.md says how near the rest comes).
 /// Opacity is area density: a wall covers each ray once, coverage adds, and T = max(0, 1 - integral of density).
 namespace lrsm {
 

@@ -65,8 +65,8 @@ void voxelizeScene(benchmark::State& state, const Scene& scene)
 
 void VoxelizeDetailed(benchmark::State& state) { voxelizeScene(state, detailedScene()); }
 void VoxelizeAtrium(benchmark::State& state) { voxelizeScene(state, atrium()); }
-BENCHMARK(VoxelizeDetailed)->ArgNames({"n", "mode"})->ArgsProduct({{128, 256, 512}, {0, 1, 2}})->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(VoxelizeAtrium)->ArgNames({"n", "mode"})->ArgsProduct({{128, 512}, {0, 1, 2}})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(VoxelizeDetailed)->ArgNames({"n", "mode"})->ArgsProduct({{128, 256, 512}, {0, 1, 2}})->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(VoxelizeAtrium)->ArgNames({"n", "mode"})->ArgsProduct({{128, 512}, {0, 1, 2}})->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void BuildPyramid(benchmark::State& state)
 {
@@ -86,6 +86,7 @@ BENCHMARK(BuildPyramid)
     ->ArgNames({"n", "directional", "float32"})
     ->ArgsProduct({{128, 512}, {0, 1}, {0, 1}})
     ->UseRealTime()
+    ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
 struct Tap {

@@ -169,10 +169,10 @@ TEST_CASE("slab: under slanted light narrow cones still give L in the mean; one 
     CHECK(sum / count == Approx(1).margin(0.015));
 }
 
-TEST_CASE("slab: a cone that widens keeps L within a tenth in the mean, whatever the step", "[conetrace][march][slab]")
+TEST_CASE("slab: a cone that widens keeps L in the mean within a few percent, more under grazing light, whatever the step", "[conetrace][march][slab]")
 {
     // sigma grows with the tap, so neighbouring Phi no longer cancel to the last digit: a few percent too much.
-    const double lightCosine = GENERATE(1.0, 0.6);
+    const double lightCosine = GENERATE(1.0, 0.6, 0.25);
     const float step = GENERATE(0.25f, 0.5f, 1.0f);
     const World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), slabSettings(step));
     double sum = 0;
@@ -181,7 +181,7 @@ TEST_CASE("slab: a cone that widens keeps L within a tenth in the mean, whatever
         sum += double(world.march(Mist{}, rayToPlane(tilted(cosine, 0.26 * i), 3.0f + 0.117f * float(i % 7), 0.11f * float(i)), 0.3f).radiance.x);
     }
     CAPTURE(lightCosine, step, sum / 72);
-    CHECK(sum / 72 == Approx(1).margin(0.1));
+    CHECK(sum / 72 == Approx(1).margin(lightCosine < 0.5 ? 0.15 : 0.06));
 }
 
 TEST_CASE("slab: two lights add, a wall seen from its unlit side emits nothing", "[conetrace][march][slab]")
