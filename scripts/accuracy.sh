@@ -43,7 +43,7 @@ for scene in $scenes; do
         json=$out/compare/$preset/$name/compare.json
         rmse=$(value "$json" rmse_over_mean %.3f)
         noise=$(value "$json" noise_rmse_over_mean %.3f)
-        net=$(awk -v r="$rmse" -v n="$noise" 'BEGIN { printf "%.3f", r > n ? sqrt(r * r - n * n) : 0 }')
+        net=$(awk -v r="$rmse" -v n="$noise" 'BEGIN { printf "%.3f", (r > n ? sqrt(r * r - n * n) : 0) }')
         echo "| $name | $preset | $(value "$json" energy_ratio %.2f) | $rmse | $noise | $net |" \
             "$(value "$json" mae_over_mean %.3f) | $(value "$json" mean %.3f) | $(value "$out/$preset/$name/frame.json" milliseconds %.0f) |" >>"$table"
     done
