@@ -111,6 +111,8 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
             {"exposure_stops", exposureOf(frame, record)},
             {"preset", record.preset},
             {"settings", settingsToJson(record.settings)},
+            {"visibility", record.visibility},
+            {"radiance", record.radiance},
             {"scene", sceneJson(record.scene, record.sceneHash)},
             {"camera", cameraJson(record.camera)},
             {"requires", requirementsJson(record.needs)},

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
+#include "validation/split.h"
 
 #include <cmath>
 #include <iomanip>
@@ -21,7 +22,7 @@ namespace lrsm {
 namespace {
 
 struct Options : CommonOptions {
-    std::string output, pixel, exposure = "auto";
+    std::string output, pixel, exposure = "auto", visibility = "voxel", radiance = "lrsm";
     double maxMemoryMegabytes = 0.0;
 };
 
@@ -32,6 +33,19 @@ std::optional<float> chosenExposure(const std::string& text)
     if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f))
         throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
     return stops;
+}
+
+/// Nothing for the ordinary frame.
+std::optional<SplitSettings> chosenSplit(const Options& options)
+{
+    if (options.visibility != "voxel" && options.visibility != "exact") throw InputError("--visibility " + options.visibility, "must be voxel or exact");
+    if (options.radiance != "lrsm" && options.radiance != "exact") throw InputError("--radiance " + options.radiance, "must be lrsm or exact");
+    if (options.visibility == "voxel" && options.radiance == "lrsm") return {};
+    if (!options.pixel.empty()) throw InputError("--pixel", "explains the cones' own picture; leave out --visibility and --radiance");
+    SplitSettings split;
+    split.visibility = options.visibility == "exact" ? Visibility::exact : Visibility::voxel;
+    split.radiance = options.radiance == "exact" ? Radiance::exact : Radiance::lrsm;
+    return split;
 }
 
 void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, const std::string& where)
@@ -56,6 +70,7 @@ int run(const Options& options)
     const IVec2 size = chosenSize(options);
     const std::optional<float> exposure = chosenExposure(options.exposure);
     if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
+    const std::optional<SplitSettings> split = chosenSplit(options);
     std::optional<IVec2> pixel;
     if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
     std::optional<OutputFolder> folder;
@@ -67,18 +82,22 @@ int run(const Options& options)
     const Requirements needs = analyseRequirements(scene, settings.force);
     enforceMemoryLimit(scene, needs, settings, size.x, size.y, options.maxMemoryMegabytes);
 
-    RenderOptions renderOptions{.width = size.x, .height = size.y, .hashPasses = true, .progress = {}};
+    RenderOptions renderOptions{.width = size.x, .height = size.y, .hashPasses = true, .progress = {}, .replaceDiffuse = {}};
     if (pixel) std::cout << explainPixel(scene, camera, needs, settings, renderOptions, pixel->x, pixel->y);
     if (!folder) return 0;
 
     Progress progress(options.quiet);
     renderOptions.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+    if (split)
+        renderOptions.replaceDiffuse = [&](const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, Gathered& gathered) {
+            gatherSplit(gbuffer, opacity, lrsms, EmbreeScene(scene), settings.cones, *split, gathered);
+        };
     const Frame frame = renderFrame(scene, camera, needs, settings, renderOptions);
     progress.show("writing", 0.0);
 
     std::vector<int> layersKept;
     for (const Frame::LightReport& light : frame.lights) layersKept.push_back(static_cast<int>(light.ranges.size()));
-    FrameRecord record{scene, camera, needs, settings, options.preset, hashScene(scene), predictMemory(settings, needs, layersKept, size.x, size.y), exposure};
+    FrameRecord record{scene, camera, needs, settings, options.preset, hashScene(scene), predictMemory(settings, needs, layersKept, size.x, size.y), exposure, options.visibility, options.radiance};
     addMeasured(record.memory, frame);
     const nlohmann::ordered_json json = frameJson(frame, record);
     writeFrame(*folder, frame, record, json);
@@ -104,6 +123,8 @@ Command addRender(CLI::App& program)
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the results; they appear whole or not at all");
     parser->add_option("--pixel", options->pixel, "x,y: print how this pixel came about, cone by cone, step by step");
+    parser->add_option("--visibility", options->visibility, "voxel, or exact: the diffuse gather by Embree rays, to see what the voxels cost")->capture_default_str();
+    parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; a frame that needs more is refused before it starts");
     return {parser, [options] { return run(*options); }};

@@ -52,7 +52,12 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
     frame.direct = log.run("direct", [&] { return traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance; });
     Gathered gathered =
         log.run("cones", [&] { return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones); });
-    if (settings.cones.filter)
+    if (options.replaceDiffuse)
+        gathered = log.run("rays", [&] {
+            options.replaceDiffuse(frame.gbuffer, opacity, lrsms, gathered);
+            return std::move(gathered);
+        });
+    else if (settings.cones.filter)
         gathered.irradiance = log.run("filter", [&] { return filterIrradiance(gathered.irradiance, frame.gbuffer); });
 
     // Picture.

@@ -48,6 +48,8 @@ struct RenderOptions {
     int width = 1280, height = 720;
     bool hashPasses = true;  ///< SHA-256 of each pass's output; its time is not counted in the pass
     std::function<void(const std::string& pass, double fraction)> progress;  ///< may be empty
+    /// When set, may replace what the diffuse cones brought (validation); there is no 4x4 filter then.
+    std::function<void(const GBuffer&, const OpacityPyramid&, const std::vector<Lrsm>&, Gathered&)> replaceDiffuse;
 };
 
 /// All passes once, in the order of the paper's Figure 3.

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
-# The arrows (no others): core <- voxel, lrsm, reference, imageio; voxel, lrsm <- conetrace; all <- apps.
+# The arrows (no others): core <- voxel, lrsm, reference, imageio; voxel, lrsm <- conetrace; conetrace, reference <- validation; all <- apps.
 # `reference` shares scene, materials and lights with the passes, and no visibility, filtering or gathering code: so it can judge.
 set(allowed_core/base core/base)
 set(allowed_core/scene core/base core/scene)
@@ -11,8 +11,9 @@ set(allowed_voxel core/base core/scene core/raster voxel)
 set(allowed_lrsm core/base core/scene core/raster lrsm)
 set(allowed_conetrace core/base core/scene core/raster voxel lrsm conetrace)
 set(allowed_reference core/base core/scene reference)
-set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference apps)
-set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference apps)
+set(allowed_validation core/base core/scene core/raster voxel lrsm conetrace reference validation)
+set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation apps)
+set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation apps)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
