@@ -34,7 +34,7 @@ std::vector<GatherDirection> gatherDirections(int strata)
 
 /// Everything that a ray reads.
 struct SplitWorld {
-    const BitGrid& voxels;
+    const OpacityPyramid& opacity;
     const std::vector<Lrsm>& lrsms;
     const EmbreeScene& embree;
     const ConeSettings& cones;
@@ -68,22 +68,22 @@ Arriving alongExactRay(const SplitWorld& world, Tracer& tracer, const Surface& s
     if (!hit) return arriving;
 
     arriving.hit = true;
-    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.voxels.frame.voxelSize};
+    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.opacity.base.frame.voxelSize};
     for (const Lrsm& lrsm : world.lrsms) arriving.radiance += lrsmRadiance(lrsm, probe, world.cones, world.phi);
     return arriving;
 }
 
-/// The exact radiance of what lies in, or next to, the first occupied voxel along the ray.
+/// The exact radiance of what lies in, or next to, the first occupied voxels along the ray.
 Arriving alongVoxelRay(const SplitWorld& world, Tracer& tracer, const Surface& surface, const Vec3& direction)
 {
-    const VoxelFrame& frame = world.voxels.frame;
+    const VoxelFrame& frame = world.opacity.base.frame;
     const Vec3 n = glm::abs(surface.geometricNormal);
     const float offset = world.cones.normalOffsetVoxels * (n.x + n.y + n.z) * frame.voxelSize;
     const Vec3 origin = surface.position + surface.geometricNormal * offset;
-    const std::optional<float> voxel = firstOccupied(world.voxels, frame.voxelsFromWorld(origin), direction, world.cones.startVoxels);
-    if (!voxel) return {};
+    const std::optional<VoxelRun> run = firstOccupied(world.opacity, frame.voxelsFromWorld(origin), direction, world.cones.startVoxels);
+    if (!run) return {};
 
-    const float tNear = std::max(0.0f, *voxel - kVoxelDiagonal) * frame.voxelSize, tFar = (*voxel + kVoxelDiagonal) * frame.voxelSize;
+    const float tNear = std::max(0.0f, run->enter - kVoxelDiagonal) * frame.voxelSize, tFar = (run->leave + kVoxelDiagonal) * frame.voxelSize;
     bool surfaceInReach = false;
     return {exactRadiance(tracer, {origin, direction, tNear, tFar, RayKind::bounce}, surfaceInReach), true};
 }
@@ -110,7 +110,7 @@ void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const st
                  const ConeSettings& cones, const SplitSettings& split, Gathered& gathered)
 {
     if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return;
-    SplitWorld world{opacity.base, lrsms, embree, cones, split, {}, gatherDirections(split.strata), NormalCdf(cones.gaussian, cones.gaussianTableSize)};
+    SplitWorld world{opacity, lrsms, embree, cones, split, {}, gatherDirections(split.strata), NormalCdf(cones.gaussian, cones.gaussianTableSize)};
     for (const Light& light : embree.scene().lights) world.lights.emplace_back(light);
 
     parallelFor(std::size_t(gbuffer.height), 1, [&](std::size_t begin, std::size_t end) {

@@ -27,8 +27,8 @@ struct SplitSettings {
 ///
 /// - Exact rays start as the path tracer's do, and see nothing below the geometric horizon.
 /// - Voxel rays start normal_offset_voxels * |n|_1 off the surface (a plane's own voxels end within |n|_1 of it), and read no voxel within
-///   start_voxels, as the cones do. With exact radiance the surface hit is the first along the ray within sqrt(3) voxels, a voxel's diagonal, of the
-///   voxel hit; a ray that meets a voxel but passes by what is in it brings nothing.
+///   start_voxels, as the cones do. With exact radiance the surface hit is the first along the ray within the first run of occupied voxels, or a
+///   voxel's diagonal before or behind it; a ray that meets voxels but passes by what is in them brings nothing.
 /// - The LRSM is looked up at the point hit, with a footprint of one base voxel. What the cones' growing footprints cost is in neither half: it is
 ///   what the ordinary frame has on top of both.
 ///

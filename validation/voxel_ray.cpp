@@ -25,9 +25,8 @@ Span clipToGrid(const Vec3& origin, const Vec3& direction, float start, float ed
 
 /// The voxel that the ray is in, and how it goes on from there.
 struct Walk {
-    const Vec3& origin;
-    const Vec3& direction;
-    float t;
+    Vec3 origin, direction, inverse;  ///< inverse: 1 / direction
+    float t = 0.0f;
     IVec3 cell{0};
 
     /// Leaves the block of `size` (a power of two) aligned voxels that holds the cell, through the face met first. Cells along the other axes
@@ -40,7 +39,7 @@ struct Walk {
         for (int a = 0; a < 3; ++a) {
             if (direction[a] == 0.0f) continue;
             const int face = direction[a] > 0.0f ? low[a] + size : low[a];
-            const float distance = (static_cast<float>(face) - origin[a]) / direction[a];
+            const float distance = (static_cast<float>(face) - origin[a]) * inverse[a];
             if (distance < leave) {
                 leave = distance;
                 axis = a;
@@ -58,20 +57,34 @@ struct Walk {
     }
 };
 
+/// Edge of an aligned block of voxels around an empty one that is known to be empty: at least 1.
+int emptyBlock(const OpacityPyramid& opacity, const IVec3& cell)
+{
+    const std::size_t brick = opacity.base.brickIndex(cell.x, cell.y, cell.z);
+    if (opacity.base.bricks[brick] != 0) return 1;
+    const int levels = opacity.emptyLevels[brick];  // a level's lookup reads the texel that holds the point, among others
+    return levels > 2 ? 1 << (levels - 1) : 4;
+}
+
 }  // namespace
 
-std::optional<float> firstOccupied(const BitGrid& grid, const Vec3& origin, const Vec3& direction, float start)
+std::optional<VoxelRun> firstOccupied(const OpacityPyramid& opacity, const Vec3& origin, const Vec3& direction, float start)
 {
+    const BitGrid& grid = opacity.base;
     const int n = grid.frame.resolution;
     const Span span = clipToGrid(origin, direction, start, static_cast<float>(n));
     if (!(span.begin < span.end)) return {};
 
-    Walk walk{origin, direction, span.begin};
+    Walk walk{origin, direction, 1.0f / direction, span.begin};
     walk.enterAt(IVec3(0), IVec3(n - 1));
-    while (walk.cell.x >= 0 && walk.cell.y >= 0 && walk.cell.z >= 0 && walk.cell.x < n && walk.cell.y < n && walk.cell.z < n) {
-        if (grid.occupied(walk.cell.x, walk.cell.y, walk.cell.z)) return walk.t;
-        const bool emptyBrick = grid.bricks[grid.brickIndex(walk.cell.x, walk.cell.y, walk.cell.z)] == 0;
-        walk.leaveBlock(emptyBrick ? 4 : 1);
+    const auto inside = [&] { return glm::all(glm::greaterThanEqual(walk.cell, IVec3(0))) && glm::all(glm::lessThan(walk.cell, IVec3(n))); };
+    const auto occupied = [&] { return grid.occupied(walk.cell.x, walk.cell.y, walk.cell.z); };
+    for (; inside(); walk.leaveBlock(emptyBlock(opacity, walk.cell))) {
+        if (!occupied()) continue;
+        VoxelRun run{walk.t, walk.t};
+        while (occupied()) walk.leaveBlock(1);
+        run.leave = walk.t;
+        return run;
     }
     return {};
 }

@@ -61,6 +61,9 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box -o out --max-memory 1", "--max-memory 1: this frame needs"},
         {"render cornell-box -o out --max-memory nan", "--max-memory"},
         {"render cornell-box -o out --exposure bright", "--exposure bright"},
+        {"render cornell-box -o out --visibility rays", "--visibility rays: must be voxel or exact"},
+        {"render cornell-box -o out --radiance rsm", "--radiance rsm: must be lrsm or exact"},
+        {"render cornell-box --pixel 1,1 --radiance exact", "--pixel"},
         {"render cornell-box --pixel 1280,0", "--pixel 1280,0"},
         {"render cornell-box --pixel 1", "--pixel 1"},
         {"render cornell-box extra -o out", "extra"},
@@ -149,6 +152,21 @@ TEST_CASE("render: every file and layer is there; frame.json repeats the frame; 
         REQUIRE(forced.find(layer.name));
         CHECK((forced.find(layer.name)->values == layer.values));
     }
+}
+
+TEST_CASE("render --visibility, --radiance: named in frame.json; by default the ordinary frame to the bit", "[apps][split]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("render cornell-box -o plain" + kTiny).code == 0);
+    REQUIRE(box.run("render cornell-box -o same --visibility voxel --radiance lrsm" + kTiny).code == 0);
+    REQUIRE(box.run("render cornell-box -o split --visibility exact --radiance lrsm" + kTiny).code == 0);
+    CHECK(readText(box.here() / "plain/image.exr") == readText(box.here() / "same/image.exr"));
+    CHECK(readText(box.here() / "plain/image.exr") != readText(box.here() / "split/image.exr"));
+    const Json plain = Json::parse(readText(box.here() / "plain/frame.json")), split = Json::parse(readText(box.here() / "split/frame.json"));
+    CHECK(plain["visibility"] == "voxel");
+    CHECK(plain["radiance"] == "lrsm");
+    CHECK(split["visibility"] == "exact");
+    CHECK(split["radiance"] == "lrsm");
 }
 
 TEST_CASE("memory: what info predicts is what render measures", "[apps][memory]")

@@ -22,6 +22,13 @@ void set(BitGrid& grid, int x, int y, int z)
     grid.bricks[grid.brickIndex(x, y, z)] |= std::uint64_t(1) << BitGrid::bitIndex(x, y, z);
 }
 
+OpacityPyramid pyramidOf(const BitGrid& grid)
+{
+    VoxelSettings settings;
+    settings.resolution = grid.frame.resolution;
+    return buildPyramid(grid, settings);
+}
+
 struct Random {
     std::uint32_t counter = 0;
     float operator()() { return unitFloat(philox({counter++, 0, 0, 0}, {7, 11})[0]); }
@@ -46,24 +53,26 @@ Interval throughVoxel(const glm::ivec3& cell, const glm::dvec3& origin, const gl
 TEST_CASE("voxel rays stop where brute force over all occupied voxels says", "[validation][voxel-ray]")
 {
     constexpr double kGraze = 1e-4;  // shorter ways through a voxel may be missed, or found, by rounding
-    const int resolution = GENERATE(2, 8, 32);
+    const int resolution = GENERATE(2, 16, 64);
     Random random;
     int hits = 0, misses = 0;
     for (int round = 0; round < 4; ++round) {
         BitGrid grid = emptyGrid(resolution);
         std::vector<glm::ivec3> occupied;
-        const int count = std::max(1, resolution * resolution / 16);
+        const int count = std::max(1, resolution * resolution / 4);
         for (int i = 0; i < count; ++i) {
             glm::ivec3 cell;
             for (int a = 0; a < 3; ++a) cell[a] = int(random() * float(resolution));
             set(grid, cell.x, cell.y, cell.z);
             occupied.push_back(cell);
         }
-        for (int i = 0; i < 500; ++i) {
+        const OpacityPyramid pyramid = pyramidOf(grid);
+        for (int i = 0; i < 1500; ++i) {
             Vec3 origin, direction;
+            Vec3 target;
             for (int a = 0; a < 3; ++a) origin[a] = (random() * 1.5f - 0.25f) * float(resolution);
-            for (int a = 0; a < 3; ++a) direction[a] = random() - 0.5f;
-            direction = glm::normalize(direction);
+            for (int a = 0; a < 3; ++a) target[a] = random() * float(resolution);
+            direction = glm::normalize(target - origin);
             const float start = i % 3 == 0 ? 0.0f : random() * 4.0f;
 
             double certain = 1e300, possible = 1e300;  // first hit, without and with grazed voxels
@@ -73,11 +82,12 @@ TEST_CASE("voxel rays stop where brute force over all occupied voxels says", "[v
                 if (span.end - begin > kGraze) certain = std::min(certain, begin);
                 if (span.end - begin > -kGraze) possible = std::min(possible, begin);
             }
-            const std::optional<float> hit = firstOccupied(grid, origin, direction, start);
-            CAPTURE(resolution, i, certain, possible, hit.value_or(-1.0f));
+            const std::optional<VoxelRun> hit = firstOccupied(pyramid, origin, direction, start);
+            CAPTURE(resolution, i, certain, possible);
             if (hit) {
-                REQUIRE(double(*hit) >= possible - 1e-3);
-                REQUIRE(double(*hit) <= certain + 1e-3);
+                REQUIRE(double(hit->enter) >= possible - 1e-3);
+                REQUIRE(double(hit->enter) <= certain + 1e-3);
+                REQUIRE(hit->leave >= hit->enter);
                 ++hits;
             } else {
                 REQUIRE(certain == 1e300);
@@ -85,21 +95,29 @@ TEST_CASE("voxel rays stop where brute force over all occupied voxels says", "[v
             }
         }
     }
-    CHECK(hits > 100);
-    CHECK(misses > 100);
+    CHECK(hits > 1000);
+    CHECK(misses > 500);
 }
 
 TEST_CASE("voxel rays along an axis: distances are exact, a start inside a voxel counts, a ray beside the grid meets nothing", "[validation][voxel-ray]")
 {
     BitGrid grid = emptyGrid(16);
     set(grid, 9, 5, 5);
+    set(grid, 10, 5, 5);
+    const OpacityPyramid pyramid = pyramidOf(grid);
     const Vec3 plusX(1, 0, 0);
-    CHECK(firstOccupied(grid, Vec3(0.5f, 5.5f, 5.5f), plusX, 0.0f) == 8.5f);
-    CHECK(firstOccupied(grid, Vec3(15.5f, 5.5f, 5.5f), -plusX, 0.0f) == 5.5f);
-    CHECK(firstOccupied(grid, Vec3(-4.0f, 5.5f, 5.5f), plusX, 0.0f) == 13.0f);
-    CHECK(firstOccupied(grid, Vec3(0.5f, 5.5f, 5.5f), plusX, 9.0f) == 9.0f);
-    CHECK(!firstOccupied(grid, Vec3(0.5f, 5.5f, 5.5f), plusX, 9.5f));
-    CHECK(!firstOccupied(grid, Vec3(0.5f, 6.5f, 5.5f), plusX, 0.0f));
-    CHECK(!firstOccupied(grid, Vec3(0.5f, -0.5f, 5.5f), plusX, 0.0f));
-    CHECK(!firstOccupied(grid, Vec3(17.0f, 5.5f, 5.5f), plusX, 0.0f));
+    const auto enters = [&](const Vec3& origin, const Vec3& direction, float start) {
+        const auto run = firstOccupied(pyramid, origin, direction, start);
+        return run ? run->enter : -1.0f;
+    };
+    CHECK(enters(Vec3(0.5f, 5.5f, 5.5f), plusX, 0.0f) == 8.5f);
+    CHECK(firstOccupied(pyramid, Vec3(0.5f, 5.5f, 5.5f), plusX, 0.0f)->leave == 10.5f);
+    CHECK(firstOccupied(pyramid, Vec3(9.5f, -1.0f, 5.5f), Vec3(0, 1, 0), 0.0f)->leave == 7.0f);
+    CHECK(enters(Vec3(15.5f, 5.5f, 5.5f), -plusX, 0.0f) == 4.5f);
+    CHECK(enters(Vec3(-4.0f, 5.5f, 5.5f), plusX, 0.0f) == 13.0f);
+    CHECK(enters(Vec3(0.5f, 5.5f, 5.5f), plusX, 10.0f) == 10.0f);
+    CHECK(enters(Vec3(0.5f, 5.5f, 5.5f), plusX, 10.5f) == -1.0f);
+    CHECK(enters(Vec3(0.5f, 6.5f, 5.5f), plusX, 0.0f) == -1.0f);
+    CHECK(enters(Vec3(0.5f, -0.5f, 5.5f), plusX, 0.0f) == -1.0f);
+    CHECK(enters(Vec3(17.0f, 5.5f, 5.5f), plusX, 0.0f) == -1.0f);
 }
