@@ -95,6 +95,18 @@ TEST_CASE("exact x exact is the path tracer's picture: in the mean, pixel by pix
     CHECK(worst < 0.06);
 }
 
+TEST_CASE("exact x LRSM keeps the light's place: neither shadowed sides nor wide footprints take light from beside them", "[validation][split]")
+{
+    const auto scene = makeBuiltinScene(GENERATE("cornell-box", "two-rooms"));
+    Settings settings = smallSettings();
+    settings.voxel.resolution = 256;
+    settings.rsm.resolution = 1024;
+    const Frame frame = renderSplit(*scene, settings, {Visibility::exact, Radiance::lrsm, 64});
+    const Metrics metrics = measure(renderSplit(*scene, settings, kExactExact).irradiance, frame.irradiance);
+    CHECK(metrics.energyRatio == Approx(1.0).epsilon(0.02));
+    CHECK(metrics.rmse < 0.1);
+}
+
 TEST_CASE("furnace: all four give the closed form", "[validation][split][furnace]")
 {
     const Scene scene = *makeBuiltinScene("furnace");  // E = 0.5 W/m^2 on the inside of the sphere
