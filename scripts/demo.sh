@@ -17,7 +17,7 @@ if $lrsm reference --help >/dev/null 2>&1; then
     # The path tracer's picture is kept until the program changes.
     if [ ! out/demo/reference/frame.json -nt $lrsm ]; then
         echo "demo: path-tracing the same box"
-        $lrsm reference cornell-box --size $size --spp 64 -o out/demo/reference
+        $lrsm reference cornell-box --size $size --spp 256 --block 64 -o out/demo/reference
     fi
     echo "demo: comparing"
     $lrsm compare out/demo/lrsm out/demo/reference -o out/demo/compare
