@@ -46,7 +46,7 @@ ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeR
 
 inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
 {
-    return {receiver.originWorld, receiver.originVoxels, direction, receiver.position, receiver.geometricNormal};
+    return {receiver.originWorld, receiver.originVoxels, direction, receiver.geometricNormal};
 }
 
 /// Diffuse cones of one pixel: E = pi * sum w_c I_c, averaged over setsPerPixel rotations.

@@ -33,7 +33,6 @@ struct ConeRay {
     Vec3 originWorld{0.0f};
     Vec3 originVoxels{0.0f};
     Vec3 direction{0.0f, 1.0f, 0.0f};  ///< unit
-    Vec3 receiverPosition{0.0f};       ///< world, before the offset along the normal
     Vec3 receiverNormal{0.0f, 1.0f, 0.0f};  ///< geometric, unit
 };
 

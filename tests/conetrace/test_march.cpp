@@ -94,7 +94,7 @@ struct World {
 
 ConeRay rayFrom(const Vec3& origin, const Vec3& direction)
 {
-    return {origin, kFrame.voxelsFromWorld(origin), direction, origin, direction};
+    return {origin, kFrame.voxelsFromWorld(origin), direction, direction};
 }
 
 /// A ray that meets the plane z = 0 after `distance` metres, at (x, y).
