@@ -12,8 +12,9 @@ set(allowed_lrsm core/base core/scene core/raster lrsm)
 set(allowed_conetrace core/base core/scene core/raster voxel lrsm conetrace)
 set(allowed_reference core/base core/scene reference)
 set(allowed_validation core/base core/scene core/raster voxel lrsm conetrace reference validation)
-set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation apps)
-set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation apps)
+set(allowed_validation/extremes core/base core/scene core/raster voxel lrsm conetrace validation/extremes)
+set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/extremes apps)
+set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/extremes apps)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
