@@ -12,9 +12,12 @@ set(allowed_lrsm core/base core/scene core/raster lrsm)
 set(allowed_conetrace core/base core/scene core/raster voxel lrsm conetrace)
 set(allowed_reference core/base core/scene reference)
 set(allowed_validation core/base core/scene core/raster voxel lrsm conetrace reference validation)
+set(allowed_validation/equations core/base core/scene core/raster voxel lrsm conetrace validation/equations)
 set(allowed_validation/extremes core/base core/scene core/raster voxel lrsm conetrace validation/extremes)
-set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/extremes apps)
-set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/extremes apps)
+set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/equations
+    validation/extremes apps)
+set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/equations
+    validation/extremes apps)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
@@ -23,6 +26,7 @@ set(owned_embree3 "^reference/")
 set(owned_embree4 "^reference/")
 set(owned_CLI "^apps/")
 set(owned_tbb "^core/base/parallel|^reference/")
+set(owned_boost "^validation/equations/oracle")
 set(owned_oneapi "^core/base/parallel|^reference/")
 
 set(violations "")
