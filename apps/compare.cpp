@@ -219,16 +219,16 @@ std::string metadataText(const LayeredImage& image)
 void writeResults(const Options& options, const Side& test, const Side& reference, const std::vector<LayerComparison>& comparisons, const Json& json)
 {
     OutputFolder folder(options.output);
-    Report report{test.path + " against " + reference.path, "", {}, {{"Test: " + test.path, metadataText(test.image)}, {"Reference: " + reference.path, metadataText(reference.image)}}};
+    Comparison report{test.path + " against " + reference.path, "", {}, {{"Test: " + test.path, metadataText(test.image)}, {"Reference: " + reference.path, metadataText(reference.image)}}};
     const auto& failed = json["failures"];
     report.summary = failed.empty() ? "No limit was passed." : "Failed: ";
     for (const auto& line : failed) report.summary += line.get<std::string>() + ". ";
     for (const LayerComparison& c : comparisons) {
-        report.sections.push_back(comparisonSection(c));
+        report.layers.push_back(comparisonSection(c));
         for (const NamedPicture& picture : comparisonPictures(c))
             folder.write((c.layer.empty() ? "RGB" : c.layer) + "." + picture.name + ".png", encodePng(picture.picture));
     }
-    folder.write("report.html", htmlReport(report));
+    folder.write("report.html", comparisonPage(report));
     folder.write("compare.json", jsonText(json));
     folder.commit();
     if (!options.quiet && !options.json) std::cout << folder.path().string() << ": report.html, compare.json, PNGs\n";

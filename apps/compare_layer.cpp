@@ -194,11 +194,11 @@ std::vector<NamedPicture> comparisonPictures(const LayerComparison& c)
             {"flip", falseColor(c.flipMap, 0.0f, 1.0f)}};
 }
 
-ReportSection comparisonSection(const LayerComparison& c)
+ComparedLayer comparisonSection(const LayerComparison& c)
 {
     const std::vector<NamedPicture> pictures = comparisonPictures(c);
     const auto encoded = [&](std::size_t i, const std::string& title) { return ReportPicture{title, encodePng(pictures[i].picture)}; };
-    ReportSection section;
+    ComparedLayer section;
     section.title = "Layer " + (c.layer.empty() ? "RGB" : c.layer);
     section.reference = encoded(0, "reference");
     section.test = encoded(1, "test");

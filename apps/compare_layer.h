@@ -3,7 +3,7 @@
 #include "core/imageio/image_io.h"
 #include "reference/flip.h"
 #include "reference/metrics.h"
-#include "reference/report.h"
+#include "core/report/comparison.h"
 #include "reference/ztest.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -47,7 +47,7 @@ std::optional<double> metricByName(const LayerComparison& comparison, const std:
 const std::vector<std::pair<std::string, std::string>>& metricNames();  ///< name, meaning
 
 nlohmann::ordered_json comparisonJson(const LayerComparison& comparison);
-ReportSection comparisonSection(const LayerComparison& comparison);
+ComparedLayer comparisonSection(const LayerComparison& comparison);
 
 struct NamedPicture {
     std::string name;

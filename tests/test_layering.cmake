@@ -1,23 +1,27 @@
 cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
-# The arrows (no others): core <- voxel, lrsm, reference, imageio; voxel, lrsm <- conetrace; conetrace, reference <- validation; all <- apps.
+# The arrows (no others): core <- voxel, lrsm, reference, imageio, report; voxel, lrsm <- conetrace; conetrace, reference <- validation;
+# conetrace <- capture; all <- apps.
 # `reference` shares scene, materials and lights with the passes, and no visibility, filtering or gathering code: so it can judge.
 set(allowed_core/base core/base)
 set(allowed_core/scene core/base core/scene)
 set(allowed_core/raster core/base core/scene core/raster)
 set(allowed_core/imageio core/base core/imageio)
+set(allowed_core/report core/base core/report)
 set(allowed_voxel core/base core/scene core/raster voxel)
 set(allowed_lrsm core/base core/scene core/raster lrsm)
 set(allowed_conetrace core/base core/scene core/raster voxel lrsm conetrace)
 set(allowed_reference core/base core/scene reference)
 set(allowed_validation core/base core/scene core/raster voxel lrsm conetrace reference validation)
-set(allowed_validation/equations core/base core/scene core/raster voxel lrsm conetrace validation/equations)
-set(allowed_validation/extremes core/base core/scene core/raster voxel lrsm conetrace validation/extremes)
-set(allowed_apps core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/equations
-    validation/extremes apps)
-set(folders core/base core/scene core/raster core/imageio voxel lrsm conetrace reference validation validation/equations
-    validation/extremes apps)
+set(passes core/base core/scene core/raster voxel lrsm conetrace)
+set(allowed_validation/equations ${passes} validation/equations)
+set(allowed_validation/ladder ${passes} reference validation validation/ladder)
+set(allowed_validation/extremes ${passes} validation/extremes)
+set(allowed_capture ${passes} core/imageio capture)
+set(allowed_apps ${passes} core/imageio core/report reference validation validation/equations validation/ladder validation/extremes capture apps)
+set(folders core/base core/scene core/raster core/imageio core/report voxel lrsm conetrace reference validation validation/equations
+            validation/ladder validation/extremes capture apps)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
