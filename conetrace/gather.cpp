@@ -10,25 +10,58 @@ namespace {
 constexpr int kTile = 16;
 constexpr int kRoughnessClasses = 64;
 
+/// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
+struct ResultRecorder : NoRecorder {
+    Vec4* next = nullptr;  ///< none: nothing is kept
+    std::size_t stride = 0;
+    void result(const ConeResult& cone)
+    {
+        if (!next) return;
+        *next = Vec4(cone.radiance, cone.opacity);
+        next += stride;
+    }
+};
+
+/// What the tiles fill in.
+struct GatherOutput {
+    Gathered& gathered;
+    ConeRecord* record;  ///< may be null
+    ResultRecorder diffuseAt(std::size_t pixel) const
+    {
+        ResultRecorder recorder;
+        if (record) recorder.next = record->diffuse.data() + pixel;
+        recorder.stride = gathered.irradiance.texels.size();
+        return recorder;
+    }
+    ResultRecorder specularAt(std::size_t pixel) const
+    {
+        ResultRecorder recorder;
+        if (record) recorder.next = record->specular.texels.data() + pixel;
+        return recorder;
+    }
+};
+
 /// Traces the pixels of one tile.
 template <Estimator estimator, class Sampler>
 void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX,
-                int tileY, Gathered& out, ConeCounts& counts)
+                int tileY, const GatherOutput& to, ConeCounts& counts)
 {
+    Gathered& out = to.gathered;
     MarchScratch scratch;
     scratch.opticalDepth.resize(plan.longestSchedule);
-    NoRecorder recorder;
     const int xEnd = std::min(gbuffer.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer.height, (tileY + 1) * kTile);
     for (int y = tileY * kTile; y < yEnd; ++y) {
         for (int x = tileX * kTile; x < xEnd; ++x) {
             const std::size_t pixel = out.irradiance.index(x, y);
             if (!gbuffer.covered(pixel)) continue;
             const Receiver receiver = receiverAt(gbuffer, world.opacity.base.frame, world.settings, x, y);
+            ResultRecorder recorder = to.diffuseAt(pixel);
             const PixelGather diffuse = gatherDiffuse<estimator>(world, sampler, plan, receiver, scratch, counts, recorder);
             out.irradiance.texels[pixel] = diffuse.irradiance;
             out.opacity.texels[pixel] = diffuse.opacity;
             if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) continue;
             const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
+            recorder = to.specularAt(pixel);
             out.specular.texels[pixel] =
                 gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
         }
@@ -36,7 +69,7 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 }
 
 template <Estimator estimator, class Sampler>
-void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, Gathered& out)
+void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const GatherOutput& out)
 {
     const int tilesX = (gbuffer.width + kTile - 1) / kTile, tilesY = (gbuffer.height + kTile - 1) / kTile;
     std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
@@ -45,12 +78,12 @@ void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& wo
             gatherTile<estimator>(gbuffer, camera, world, sampler, plan, static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX,
                                   out, counts[tile]);
     });
-    for (const ConeCounts& tile : counts) out.counts += tile;
+    for (const ConeCounts& tile : counts) out.gathered.counts += tile;
 }
 
 /// Picks the lookup: specialised for what presets use, generic otherwise; the bits are the same.
 template <Estimator estimator>
-void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, Gathered& out)
+void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     const OpacityPyramid& opacity = world.opacity;
     if (opacity.storage != Storage::gpu || world.settings.filterFraction != FilterFraction::exact) {
@@ -99,19 +132,25 @@ Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& frame, const ConeS
 }
 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
-                    const Requirements& needs, const ConeSettings& settings)
+                    const Requirements& needs, const ConeSettings& settings, ConeRecord* record)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
     out.opacity = Image<float>(gbuffer.width, gbuffer.height);
     if (needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
 
+    if (record) {
+        record->cones = settings.count * settings.setsPerPixel;
+        record->diffuse.assign(static_cast<std::size_t>(record->cones) * out.irradiance.texels.size(), Vec4(0.0f));
+        record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
+    }
+
     const GatherPlan plan = planGather(opacity, needs, settings);
     const ConeWorld world{opacity, lrsms, settings, plan.phi};
     if (settings.estimator == Estimator::slab)
-        gatherWith<Estimator::slab>(gbuffer, camera, world, plan, out);
+        gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record});
     else
-        gatherWith<Estimator::paper>(gbuffer, camera, world, plan, out);
+        gatherWith<Estimator::paper>(gbuffer, camera, world, plan, {out, record});
     return out;
 }
 

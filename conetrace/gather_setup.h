@@ -49,6 +49,8 @@ inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
     return {receiver.originWorld, receiver.originVoxels, direction, receiver.geometricNormal};
 }
 
+/// A recorder is told what it has functions for: cone() before a cone, result() after it; with `active` also its steps and layers.
+
 /// Diffuse cones of one pixel: E = pi * sum w_c I_c, averaged over setsPerPixel rotations.
 template <Estimator estimator, class Sampler, class Recorder>
 PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver,
@@ -63,9 +65,9 @@ PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const 
             const ConeRing& ring = plan.cones.rings[r];
             for (int c = ring.first; c < ring.first + ring.count; ++c) {
                 const ConeRay ray = coneRay(receiver, frame * directions[std::size_t(c)]);
-                if constexpr (Recorder::active) recorder.cone(ray, ring.weight, ring.tanHalf);
+                if constexpr (requires { recorder.cone(ray, ring.weight, ring.tanHalf); }) recorder.cone(ray, ring.weight, ring.tanHalf);
                 const ConeResult cone = marchCone<estimator>(world, sampler, ray, plan.ringSchedules[r], scratch, counts, recorder);
-                if constexpr (Recorder::active) recorder.result(cone);
+                if constexpr (requires { recorder.result(cone); }) recorder.result(cone);
                 sum.irradiance += ring.weight * cone.radiance;
                 sum.opacity += ring.weight * cone.opacity;
             }
@@ -85,9 +87,9 @@ Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const Gather
     const auto last = static_cast<float>(plan.specularSchedules.size() - 1);
     const MarchSchedule& schedule = plan.specularSchedules[static_cast<std::size_t>(std::clamp(roughness, 0.0f, 1.0f) * last + 0.5f)];
     const ConeRay ray = coneRay(receiver, glm::normalize(mirror));
-    if constexpr (Recorder::active) recorder.cone(ray, 1.0f, schedule.tanHalf);
+    if constexpr (requires { recorder.cone(ray, 1.0f, schedule.tanHalf); }) recorder.cone(ray, 1.0f, schedule.tanHalf);
     const ConeResult cone = marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);
-    if constexpr (Recorder::active) recorder.result(cone);
+    if constexpr (requires { recorder.result(cone); }) recorder.result(cone);
     return cone.radiance;
 }
 

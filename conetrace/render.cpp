@@ -30,12 +30,15 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
                   const RenderOptions& options)
 {
     Frame frame;
+    const FrameObserver nobody;
+    const FrameObserver& observer = options.observer ? *options.observer : nobody;
     PassLog log(options, kPassesPerFrame + kPassesPerLight * static_cast<int>(scene.lights.size()));
 
     // Occlusion: binary voxels and their mips.
     BitGrid occupied = log.run("voxelize", [&] { return voxelize(scene, settings.voxel); });
     frame.voxelsSet = occupied.countOccupied();
     const OpacityPyramid opacity = log.run("voxel mips", [&] { return buildPyramid(std::move(occupied), settings.voxel); });
+    if (observer.opacity) observer.opacity(opacity);
 
     // Light: an RSM a light, split into pre-filtered layers.
     std::vector<Rsm> rsms;
@@ -45,13 +48,18 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
         rsms.push_back(log.run("rsm" + number, [&] { return renderRsm(scene, scene.lights[i], needs, settings.rsm); }));
         lrsms.push_back(log.run("lrsm" + number, [&] { return buildLrsm(rsms.back(), settings.layers); }));
         frame.lights.push_back(reportLight(rsms.back(), lrsms.back()));
+        if (observer.rsm) observer.rsm(i, rsms.back());
+        if (observer.lrsm) observer.lrsm(i, lrsms.back());
     }
 
     // Eye: the visible surfaces, their direct light, and the cones.
     frame.gbuffer = log.run("gbuffer", [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
     frame.direct = log.run("direct", [&] { return traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance; });
-    Gathered gathered =
-        log.run("cones", [&] { return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones); });
+    ConeRecord record;
+    Gathered gathered = log.run("cones", [&] {
+        return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones, observer.cones ? &record : nullptr);
+    });
+    if (observer.cones) observer.cones(gathered, record);
     if (options.replaceDiffuse)
         gathered = log.run("rays", [&] {
             options.replaceDiffuse(frame.gbuffer, opacity, lrsms, gathered);

@@ -44,12 +44,21 @@ struct Frame {
     std::vector<LightReport> lights;
 };
 
+/// Is shown what the frame itself does not keep, the moment each pass has made it; functions may be empty.
+struct FrameObserver {
+    std::function<void(const OpacityPyramid&)> opacity;  ///< base level included
+    std::function<void(std::size_t light, const Rsm&)> rsm;
+    std::function<void(std::size_t light, const Lrsm&)> lrsm;
+    std::function<void(const Gathered&, const ConeRecord&)> cones;  ///< before the 4x4 filter
+};
+
 struct RenderOptions {
     int width = 1280, height = 720;
     bool hashPasses = true;  ///< SHA-256 of each pass's output; its time is not counted in the pass
     std::function<void(const std::string& pass, double fraction)> progress;  ///< may be empty
     /// When set, may replace what the diffuse cones brought (validation); there is no 4x4 filter then.
     std::function<void(const GBuffer&, const OpacityPyramid&, const std::vector<Lrsm>&, Gathered&)> replaceDiffuse;
+    const FrameObserver* observer = nullptr;  ///< must outlive the frame; changes no bit of it
 };
 
 /// All passes once, in the order of the paper's Figure 3.
