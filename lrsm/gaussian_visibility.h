@@ -14,15 +14,17 @@ inline constexpr float kVarianceFloor = 2.5e-5f;
 
 /// Bounds on the absolute error of Phi, tested against 50-digit arithmetic. `table` has two parts: the interpolation error h^2/8 max|Phi''|
 /// for N entries over [-5, 5], which tableCdfMaxError() adds to the constant part (the tails cut at +-5, Phi(-5) = 2.9e-7, and float rounding).
-inline constexpr float kPolynomialCdfMaxError = 3.5e-7f;
+inline constexpr float kPolynomialCdfMaxError = 3e-7f;
 inline constexpr float kExactCdfMaxError = 3.1e-8f;  ///< the final rounding to float
 inline constexpr double kExactDoubleCdfMaxError = 1e-15;
-inline constexpr float kTableCdfRoundingError = 8e-7f;
+inline constexpr double kExactDoubleCdfMaxRelativeError = 2e-13;  ///< in the lower tail, down to x = -37
+inline constexpr float kTableCdfRoundingError = 5e-7f;
 inline constexpr float kTableHalfWidth = 5.0f;
 float tableCdfMaxError(int tableSize);
 
 /// Phi in double by our own series and continued fraction: the accurate twin of the kernels' versions.
-/// Absolute error <= kExactDoubleCdfMaxError; in the lower tail also relative, <= 1e-13 down to x = -37. NaN gives NaN.
+/// Absolute error <= kExactDoubleCdfMaxError; in the lower tail also relative, <= kExactDoubleCdfMaxRelativeError
+/// down to x = -37. NaN gives NaN.
 double normalCdfExact(double x);
 
 /// Phi(x) - 1/2, lane by lane: an odd rational function x P(x^2) / Q(x^2), degrees 5 and 4, minimax on |x| <= 5.25 and constant beyond.

@@ -32,13 +32,15 @@ inline constexpr double kLog2MaxError = 4e-16;
 
 /// 2^x for |x| <= 1000; relative error <= kExp2MaxError. Saturates to 0 and infinity beyond.
 double exp2Exact(double x);
-inline constexpr double kExp2MaxError = 1e-15;
+inline constexpr double kExp2MaxError = 4e-16;
 
-/// x^y for x >= 0 by way of the two above (0^y = 0 for y > 0; x^0 = 1). Relative error <= 1e-13 for |y log2 x| <= 100.
+/// x^y for x >= 0 by way of the two above (0^y = 0 for y > 0; x^0 = 1). Relative error <= kPowerMaxError for |y log2 x| <= 100.
 double power(double x, double y);
+inline constexpr double kPowerMaxError = 2.5e-14;
 
-/// Fast base-2 logarithm for kernels: x > 0 normal float; error <= kFastLog2MaxError. Exact for powers of two.
-inline constexpr float kFastLog2MaxError = 2e-6f;
+/// Fast base-2 logarithm for kernels: x > 0 normal float; error <= kFastLog2MaxError + |log2 x| 2^-24, the second part being the result's own
+/// rounding. Exact for powers of two.
+inline constexpr float kFastLog2MaxError = 2e-7f;
 inline float fastLog2(float x)
 {
     // Exponent by integer arithmetic; the mantissa in [sqrt(1/2), sqrt 2) through the same artanh series, cut at s^7

@@ -17,6 +17,8 @@ float floatFromHalf(std::uint16_t bits);
 /// FLOAT to UNORM (section 3.2.3.6): NaN becomes 0, clamp to [0, 1], times 2^n - 1, plus 0.5, drop the fraction.
 std::uint8_t unorm8FromFloat(float value);
 std::uint16_t unorm16FromFloat(float value);
+/// By how much more than half a code a conversion may be off, because c (2^n - 1) + 0.5 is itself rounded to float.
+inline constexpr double kUnorm8EdgeError = 1e-5, kUnorm16EdgeError = 0.004;
 /// UNORM to FLOAT: bits / (2^n - 1), correctly rounded.
 float floatFromUnorm8(std::uint8_t bits);
 float floatFromUnorm16(std::uint16_t bits);

@@ -1,10 +1,32 @@
 #include "validation/equations/check_equations.h"
 
 #include "core/base/check.h"
+#include "validation/equations/check_run.h"
 
 #include <algorithm>
 
 namespace lrsm {
+namespace {
+
+/// A file of checks: the equations its rows may carry, and roughly its share of the whole time.
+struct Group {
+    const char* title;
+    std::vector<std::string> equations;
+    void (*check)(CheckRun&);
+    double share;
+};
+
+const std::vector<Group>& groups()
+{
+    static const std::vector<Group> all = {
+        {"Eq. 12: normal distribution and visible fraction", {"12"}, checkGaussian, 6},
+        {"Table 1: formats", {"table1"}, checkFormats, 2},
+        {"elementary functions", {"base"}, checkElementary, 4},
+    };
+    return all;
+}
+
+}  // namespace
 
 bool EquationReport::holds() const
 {
@@ -24,7 +46,31 @@ EquationReport checkEquations(const EquationOptions& options)
         for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
         throw InputError("equation \"" + *options.equation + "\"", "there is no check of this name; there are " + known);
     }
-    return {};
+    const auto wanted = [&](const Group& group) {
+        return !options.equation || std::find(group.equations.begin(), group.equations.end(), *options.equation) != group.equations.end();
+    };
+    double total = 0.0, done = 0.0;
+    for (const Group& group : groups()) total += wanted(group) ? group.share : 0.0;
+
+    EquationReport report;
+    CheckRun run(options, report);
+    for (const Group& group : groups()) {
+        if (!wanted(group)) continue;
+        if (options.progress) options.progress(group.title, done / total);
+        group.check(run);
+        done += group.share;
+    }
+
+    // A group may hold more than the one equation asked for.
+    if (options.equation) {
+        std::erase_if(report.checks, [&](const EquationCheck& check) { return check.equation != *options.equation; });
+        std::erase_if(report.curves, [&](const EquationCurve& curve) { return curve.equation != *options.equation; });
+    }
+    // The equations in the paper's order, whatever group they come from.
+    const auto place = [&](const std::string& equation) { return std::find(names.begin(), names.end(), equation) - names.begin(); };
+    std::stable_sort(report.checks.begin(), report.checks.end(), [&](const auto& a, const auto& b) { return place(a.equation) < place(b.equation); });
+    if (options.progress) options.progress("done", 1.0);
+    return report;
 }
 
 }  // namespace lrsm

@@ -12,15 +12,15 @@ namespace lrsm {
 
 /// One function held against one oracle over one domain.
 struct EquationCheck {
-    std::string equation;   ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7" for cones,
+    std::string equation = {};   ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7" for cones,
                             ///< "base" for the elementary functions that all of them stand on
-    std::string function;   ///< "gaussianVisibility, polynomial"
-    std::string oracle;     ///< "50-digit erfc (Boost.Multiprecision)"
-    std::string domain;     ///< in words, with ranges
-    std::string boundName;  ///< the constant that code, docs and tests share: "kPolynomialCdfMaxError"
-    std::string errorKind;  ///< what the three numbers below are: "absolute", "relative", "ULP", "wrong results"
+    std::string function = {};   ///< "gaussianVisibility, polynomial"
+    std::string oracle = {};     ///< "50-digit erfc (Boost.Multiprecision)"
+    std::string domain = {};     ///< in words, with ranges
+    std::string boundName = {};  ///< the constant that code, docs and tests share: "kPolynomialCdfMaxError"
+    std::string errorKind = {};  ///< what the three numbers below are: "absolute", "relative", "ULP", "wrong results"
     double bound = 0.0, worst = 0.0, meanError = 0.0;
-    std::string worstInput;  ///< the input of the worst case, in digits that restore its bits
+    std::string worstInput = {};  ///< the input of the worst case, in digits that restore its bits
     std::uint64_t evaluations = 0;
     double nanoseconds = 0.0;  ///< median time of a call; 0: not measured
 
@@ -30,9 +30,9 @@ struct EquationCheck {
 
 /// One end, or one point, of a choice of speed against accuracy: error beside time.
 struct EquationTrade {
-    std::string setting;   ///< key in docs/settings.md: "gaussian", "storage", "half_rounding"
-    std::string choice;    ///< "table(256)", "float32", "nearest_even"
-    std::string quantity;  ///< what the error is of: "V, Eq. 12"
+    std::string setting = {};   ///< key in docs/settings.md: "gaussian", "storage", "half_rounding"
+    std::string choice = {};    ///< "table(256)", "float32", "nearest_even"
+    std::string quantity = {};  ///< what the error is of: "V, Eq. 12"
     double bound = 0.0, worst = 0.0, meanError = 0.0;  ///< absolute; signed mean in `bias`
     double bias = 0.0;
     double nanoseconds = 0.0;  ///< median time of a call; 0: not measured
@@ -40,13 +40,13 @@ struct EquationTrade {
 };
 
 struct EquationSeries {
-    std::string name;
-    std::vector<double> x, y;  ///< of one length
+    std::string name = {};
+    std::vector<double> x = {}, y = {};  ///< of one length
 };
 struct EquationCurve {
-    std::string equation, title, xLabel, yLabel;
+    std::string equation = {}, title = {}, xLabel = {}, yLabel = {};
     bool logX = false, logY = false;
-    std::vector<EquationSeries> series;
+    std::vector<EquationSeries> series = {};
 };
 
 struct EquationReport {
