@@ -18,5 +18,6 @@ Command addMerge(CLI::App& program);
 Command addReference(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addSettings(CLI::App& program);
+Command addValidate(CLI::App& program);
 
 }  // namespace lrsm

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CompareArguments {
     std::string test, reference, output, regions = "4x4", exposure = "auto", flipExposures = "auto";
     std::vector<std::string> layers, failAbove, failBelow;
     double pixelsPerDegree = kFlipPixelsPerDegree;
@@ -53,7 +53,7 @@ bool parse(const std::string& text, T& value)
     return CLI::detail::lexical_cast(text, value);
 }
 
-CompareSettings chosenSettings(const Options& options, bool bothSceneReferred)
+CompareSettings chosenSettings(const CompareArguments& options, bool bothSceneReferred)
 {
     CompareSettings settings;
     settings.sceneReferred = bothSceneReferred;
@@ -91,7 +91,7 @@ std::string layerList(const LayeredImage& image)
 }
 
 /// irradiance where both have it, else combined, else what a viewer shows.
-std::vector<std::string> chosenLayers(const Options& options, const Side& test, const Side& reference)
+std::vector<std::string> chosenLayers(const CompareArguments& options, const Side& test, const Side& reference)
 {
     std::vector<std::string> layers = options.layers;
     const auto both = [&](const std::string& name) { return isColor(test.image, name) && isColor(reference.image, name); };
@@ -147,7 +147,7 @@ struct Gate {
     bool above = true;
 };
 
-std::vector<Gate> parseGates(const Options& options)
+std::vector<Gate> parseGates(const CompareArguments& options)
 {
     std::vector<Gate> gates;
     for (const bool above : {true, false})
@@ -216,7 +216,7 @@ std::string metadataText(const LayeredImage& image)
     return text.empty() ? "(none stored)" : text;
 }
 
-void writeResults(const Options& options, const Side& test, const Side& reference, const std::vector<LayerComparison>& comparisons, const Json& json)
+void writeResults(const CompareArguments& options, const Side& test, const Side& reference, const std::vector<LayerComparison>& comparisons, const Json& json)
 {
     OutputFolder folder(options.output);
     Comparison report{test.path + " against " + reference.path, "", {}, {{"Test: " + test.path, metadataText(test.image)}, {"Reference: " + reference.path, metadataText(reference.image)}}};
@@ -234,7 +234,7 @@ void writeResults(const Options& options, const Side& test, const Side& referenc
     if (!options.quiet && !options.json) std::cout << folder.path().string() << ": report.html, compare.json, PNGs\n";
 }
 
-int run(const Options& options)
+int runCompare(const CompareArguments& options)
 {
     const std::vector<Gate> gates = parseGates(options);
     if (!options.output.empty()) { const OutputFolder writable(options.output); }
@@ -272,7 +272,7 @@ int run(const Options& options)
 Command addCompare(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("compare", "How far a picture is from the reference: numbers, maps, one HTML file");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareArguments>();
     parser->add_option("TEST", options->test, "folder of a render, or an EXR or PNG")->required();
     parser->add_option("REFERENCE", options->reference, "folder of a reference, or an EXR or PNG of the same size")->required();
     parser->add_option("-o,--output", options->output, "folder for report.html, compare.json and maps");
@@ -289,7 +289,7 @@ Command addCompare(CLI::App& program)
     parser->add_flag("--all-pixels", options->allPixels, "count pixels where the eye sees nothing, too");
     parser->add_flag("--quiet", options->quiet, "no table");
     parser->add_flag("--json", options->json, "JSON on standard output");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runCompare(*options); }};
 }
 
 }  // namespace lrsm

@@ -82,14 +82,6 @@ LayeredImage layersOf(const Frame& frame, const Json& json)
     return image;
 }
 
-/// Irradiance shown as the radiance of a white surface, so that one exposure fits all parts.
-Image<Vec3> onWhite(const Image<Vec3>& irradiance)
-{
-    Image<Vec3> radiance = irradiance;
-    for (Vec3& value : radiance.texels) value *= 1.0f / kPi;
-    return radiance;
-}
-
 Image<Rgb8> depthPicture(const Image<float>& depth)
 {
     float farthest = 0.0f;

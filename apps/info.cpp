@@ -17,7 +17,7 @@ namespace lrsm {
 
 namespace {
 
-struct Options : CommonOptions {
+struct InfoArguments : CommonOptions {
     bool list = false;
 };
 
@@ -32,7 +32,7 @@ int listBuiltins(bool json)
     return 0;
 }
 
-int run(const Options& options)
+int runInfo(const InfoArguments& options)
 {
     if (options.list) return listBuiltins(options.json);
     const Settings settings = chosenSettings(options);
@@ -63,13 +63,13 @@ int run(const Options& options)
 Command addInfo(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("info", "What is in a scene, what it requires, how much memory a frame takes");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InfoArguments>();
     addSceneOptions(*parser, *options);
     addSettingOptions(*parser, *options);
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_flag("--list", options->list, "list the built-in scenes");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runInfo(*options); }};
 }
 
 }  // namespace lrsm

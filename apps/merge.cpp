@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct MergeArguments {
     std::vector<std::string> folders;
     std::string output;
     bool allowGaps = false, quiet = false, json = false;
@@ -51,7 +51,7 @@ void addCounts(Json& json, const Json& other, const std::string& key)
     }
 }
 
-int run(const Options& options)
+int runMerge(const MergeArguments& options)
 {
     if (options.output.empty()) throw InputError("merge", "needs -o FOLDER");
     { const OutputFolder writable(options.output); }
@@ -96,13 +96,13 @@ int run(const Options& options)
 Command addMerge(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("merge", "Join sample ranges of one reference, to the bits of rendering them at once");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<MergeArguments>();
     parser->add_option("FOLDER", options->folders, "folders written by lrsm reference")->required()->expected(1, 1 << 20);
     parser->add_option("-o,--output", options->output, "folder for the results");
     parser->add_flag("--allow-gaps", options->allowGaps, "join ranges that do not touch");
     parser->add_flag("--quiet", options->quiet, "no summary");
     parser->add_flag("--json", options->json, "JSON on standard output");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runMerge(*options); }};
 }
 
 }  // namespace lrsm

@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-struct Options : CommonOptions {
+struct ReferenceArguments : CommonOptions {
     std::string output, samples, model = "single", exposure = "auto";
     std::uint64_t spp = 256, seed = 0;
     int block = 16;
@@ -57,7 +57,7 @@ class CatchInterrupts {
 
 constexpr int kInterruptedCode = 130;  // what a shell reports for Ctrl-C
 
-ReferenceSettings chosenReference(const Options& options)
+ReferenceSettings chosenReference(const ReferenceArguments& options)
 {
     ReferenceSettings settings;
     const IVec2 size = chosenSize(options);
@@ -74,14 +74,14 @@ ReferenceSettings chosenReference(const Options& options)
     return settings;
 }
 
-SampleRange chosenRange(const Options& options)
+SampleRange chosenRange(const ReferenceArguments& options)
 {
     if (!options.samples.empty()) return parseSamples(options.samples);
     if (options.spp < 1 || options.spp > std::uint64_t(1) << 32) throw InputError("--spp " + std::to_string(options.spp), "must be 1 .. 2^32");
     return {0, options.spp};
 }
 
-Identity identify(const Options& options, const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash)
+Identity identify(const ReferenceArguments& options, const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash)
 {
     Json eye = cameraJson(camera);
     eye.erase("name");
@@ -98,7 +98,7 @@ Identity identify(const Options& options, const ReferenceSettings& settings, con
 /// Renders the samples of one state, writing checkpoints; false when interrupted.
 class Runner {
   public:
-    Runner(const PathTracer& tracer, const Options& options, Checkpoint& checkpoint, Progress& progress)
+    Runner(const PathTracer& tracer, const ReferenceArguments& options, Checkpoint& checkpoint, Progress& progress)
         : tracer_(tracer), options_(options), checkpoint_(checkpoint), progress_(progress), saved_(Clock::now())
     {
     }
@@ -138,7 +138,7 @@ class Runner {
     }
 
     const PathTracer& tracer_;
-    const Options& options_;
+    const ReferenceArguments& options_;
     Checkpoint& checkpoint_;
     Progress& progress_;
     Clock::time_point saved_, begun_;
@@ -155,7 +155,7 @@ void requireBeginning(const ReferenceState& state, const SampleRange& range, con
 }
 
 /// The samples already in the folder, if there are any to go on from.
-std::optional<Checkpoint> earlierSamples(const Options& options, const Identity& identity, const SampleRange& range)
+std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, const Identity& identity, const SampleRange& range)
 {
     const std::filesystem::path file = std::filesystem::path(options.output) / kSamplesFile;
     std::error_code ignored;
@@ -183,7 +183,7 @@ Json speedJson(const RayCounts& rays, double seconds)
             {"million_per_second", seconds > 0.0 ? double(rays.total()) / seconds * 1e-6 : 0.0}};
 }
 
-int run(const Options& options)
+int runReference(const ReferenceArguments& options)
 {
     if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
     const ReferenceSettings settings = chosenReference(options);
@@ -264,7 +264,7 @@ int run(const Options& options)
 Command addReference(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("reference", "Path trace the same picture: the truth, with its variance");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ReferenceArguments>();
     addSceneOptions(*parser, *options);
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
@@ -279,7 +279,7 @@ Command addReference(CLI::App& program)
     parser->add_option("--checkpoint-seconds", options->checkpointSeconds, "how often samples.bin is written; a kill loses no more")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
     parser->add_flag("--bare-loop", options->bareLoop, "also time the same rays without shading");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runReference(*options); }};
 }
 
 }  // namespace lrsm

@@ -42,14 +42,6 @@ LayeredImage layersOf(const ReferenceFrame& frame, const SeenLayers& seen, const
     return image;
 }
 
-/// Irradiance shown as the radiance of a white surface, so that one exposure fits all parts.
-Image<Vec3> onWhite(const Image<Vec3>& irradiance)
-{
-    Image<Vec3> radiance = irradiance;
-    for (Vec3& value : radiance.texels) value *= 1.0f / kPi;
-    return radiance;
-}
-
 bool anyLight(const Image<Vec3>& picture)
 {
     return std::any_of(picture.texels.begin(), picture.texels.end(), [](const Vec3& v) { return v != Vec3(0.0f); });

@@ -21,7 +21,7 @@ namespace lrsm {
 
 namespace {
 
-struct Options : CommonOptions {
+struct RenderArguments : CommonOptions {
     std::string output, pixel, exposure = "auto", visibility = "voxel", radiance = "lrsm";
     double maxMemoryMegabytes = 0.0;
 };
@@ -36,7 +36,7 @@ std::optional<float> chosenExposure(const std::string& text)
 }
 
 /// Nothing for the ordinary frame.
-std::optional<SplitSettings> chosenSplit(const Options& options)
+std::optional<SplitSettings> chosenSplit(const RenderArguments& options)
 {
     if (options.visibility != "voxel" && options.visibility != "exact") throw InputError("--visibility " + options.visibility, "must be voxel or exact");
     if (options.radiance != "lrsm" && options.radiance != "exact") throw InputError("--radiance " + options.radiance, "must be lrsm or exact");
@@ -63,7 +63,7 @@ void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, cons
     std::cout << where << ": image.exr, image.png and one PNG a part, frame.json\n";
 }
 
-int run(const Options& options)
+int runRender(const RenderArguments& options)
 {
     if (options.output.empty() && options.pixel.empty()) throw InputError("render", "needs -o FOLDER (or --pixel x,y)");
     const Settings settings = chosenSettings(options);
@@ -116,7 +116,7 @@ int run(const Options& options)
 Command addRender(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("render", "Render a frame: EXR layers, PNGs, frame.json");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RenderArguments>();
     addSceneOptions(*parser, *options);
     addSettingOptions(*parser, *options);
     addPictureOptions(*parser, *options);
@@ -127,7 +127,7 @@ Command addRender(CLI::App& program)
     parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; a frame that needs more is refused before it starts");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runRender(*options); }};
 }
 
 }  // namespace lrsm

@@ -9,7 +9,7 @@ namespace lrsm {
 
 namespace {
 
-struct Options {
+struct SettingsArguments {
     bool markdown = false, json = false;
     std::string preset;
 };
@@ -32,7 +32,7 @@ void showPreset(const std::string& name)
         std::cout << change.key << " = " << change.b << "   (balanced: " << change.a << ")\n";
 }
 
-int run(const Options& options)
+int runSettings(const SettingsArguments& options)
 {
     if (options.markdown)
         std::cout << settingsMarkdown();
@@ -50,11 +50,11 @@ int run(const Options& options)
 Command addSettings(CLI::App& program)
 {
     CLI::App* parser = program.add_subcommand("settings", "List every setting and preset");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SettingsArguments>();
     parser->add_option("--preset", options->preset, "what this preset changes against `balanced`");
     parser->add_flag("--json", options->json, "a preset's values as a settings file");
     parser->add_flag("--markdown", options->markdown, "docs/settings.md");
-    return {parser, [options] { return run(*options); }};
+    return {parser, [options] { return runSettings(*options); }};
 }
 
 }  // namespace lrsm

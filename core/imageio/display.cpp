@@ -97,4 +97,11 @@ Image<Rgb8> normalColor(const Image<Vec3>& normals)
     });
 }
 
+Image<Vec3> onWhite(const Image<Vec3>& irradiance)
+{
+    Image<Vec3> radiance = irradiance;
+    for (Vec3& value : radiance.texels) value *= 1.0f / kPi;
+    return radiance;
+}
+
 }  // namespace lrsm

@@ -24,6 +24,8 @@ Image<Rgb8> tonemap(const Image<Vec3>& picture, float stops);
 Image<Rgb8> falseColor(const Image<float>& values, float min, float max);
 /// -limit..limit: blue, white at 0, red. Not finite: black.
 Image<Rgb8> signedFalseColor(const Image<float>& values, float limit);
+/// Irradiance as the radiance of a white surface, E / pi, so that one exposure fits all parts of a picture.
+Image<Vec3> onWhite(const Image<Vec3>& irradiance);
 /// A unit vector as a colour, 0.5 + 0.5 n; the zero vector is black.
 Image<Rgb8> normalColor(const Image<Vec3>& normals);
 

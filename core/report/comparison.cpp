@@ -5,7 +5,7 @@
 namespace lrsm {
 namespace {
 
-constexpr std::string_view kStyle = R"(
+constexpr std::string_view kComparisonStyle = R"(
 .pair { position: relative; display: inline-block; max-width: 100%; line-height: 0; }
 .pair img { display: block; max-width: 100%; image-rendering: pixelated; }
 .pair .over { position: absolute; left: 0; top: 0; height: 100%; overflow: hidden; width: 50%; border-right: 1px solid #fff; }
@@ -15,7 +15,7 @@ constexpr std::string_view kStyle = R"(
 )";
 
 // The left part shows the test. "Flicker" swaps the two in place, which is what the eye compares best.
-constexpr std::string_view kScript = R"(
+constexpr std::string_view kComparisonScript = R"(
 for (const box of document.querySelectorAll('.compare')) {
   const pair = box.querySelector('.pair'), over = box.querySelector('.over'), inner = over.querySelector('img');
   const slide = box.querySelector('input[type=range]'), flick = box.querySelector('input[type=checkbox]'), now = box.querySelector('output');
@@ -56,7 +56,7 @@ std::string comparisonPage(const Comparison& comparison)
     for (const ComparedLayer& layer : comparison.layers) body += sectionHtml(layer);
     if (!comparison.settings.empty()) body += headingHtml("Settings");
     for (const auto& [heading, text] : comparison.settings) body += foldedHtml(heading, preformattedHtml(text), true);
-    return htmlPage({comparison.title, comparison.summary, body, std::string(kStyle), std::string(kScript)});
+    return htmlPage({comparison.title, comparison.summary, body, std::string(kComparisonStyle), std::string(kComparisonScript)});
 }
 
 }  // namespace lrsm

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/report/table.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -7,12 +9,6 @@
 
 /// Parts of a self-contained HTML page: pictures inside as base64, no script or style from elsewhere. All text given is escaped.
 namespace lrsm {
-
-struct ReportTable {
-    std::string title;
-    std::vector<std::string> head;
-    std::vector<std::vector<std::string>> rows;
-};
 
 struct ReportPicture {
     std::string title;
@@ -24,7 +20,7 @@ std::string htmlEscaped(std::string_view text);
 /// An <img> that carries its picture.
 std::string pictureHtml(const ReportPicture& picture);
 
-/// First column left-aligned, the others right. A row whose first cell begins with "!" is marked as failed (and the "!" dropped).
+/// First column left-aligned, the others right; the mark of a failed row becomes its colour.
 std::string tableHtml(const ReportTable& table);
 
 std::string headingHtml(std::string_view text);

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const std::string kTiny = " cornell-box --size 24x16 ";
+const std::string kTinyReference = " cornell-box --size 24x16 ";
 
 void writePicture(const fs::path& path, const LayeredImage& image)
 {
@@ -39,11 +39,11 @@ void plant(const Sandbox& sandbox, const std::string& name, const Defect& defect
 TEST_CASE("program: reference ranges merge and resume to the same bytes, for 1 and 2 threads", "[apps][reference]")
 {
     const Sandbox box;
-    REQUIRE(box.run("reference" + kTiny + "--spp 50 -o whole --threads 1 --quiet").code == 0);
-    REQUIRE(box.run("reference" + kTiny + "--samples 0:21 -o a --threads 2 --quiet").code == 0);
-    REQUIRE(box.run("reference" + kTiny + "--samples 21:50 -o b --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 50 -o whole --threads 1 --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--samples 0:21 -o a --threads 2 --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--samples 21:50 -o b --quiet").code == 0);
     REQUIRE(box.run("merge b a -o joined --quiet").code == 0);
-    REQUIRE(box.run("reference" + kTiny + "--spp 50 --resume -o a --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 50 --resume -o a --quiet").code == 0);
     for (const char* name : {"image.exr", "samples.bin"})
         for (const char* folder : {"joined", "a"}) CHECK(readText(box.here() / "whole" / name) == readText(box.here() / folder / name));
 
@@ -52,10 +52,10 @@ TEST_CASE("program: reference ranges merge and resume to the same bytes, for 1 a
     CHECK(overlap.code == 2);
     CHECK(isOneLine(overlap.err));
     CHECK(contains(overlap.err, "overlap"));
-    REQUIRE(box.run("reference" + kTiny + "--samples 60:70 -o far --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--samples 60:70 -o far --quiet").code == 0);
     CHECK(contains(box.run("merge a far -o x").err, "gaps"));
     CHECK(box.run("merge a far -o gapped --allow-gaps --quiet").code == 0);
-    REQUIRE(box.run("reference" + kTiny + "--samples 50:60 --seed 1 -o seed --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--samples 50:60 --seed 1 -o seed --quiet").code == 0);
     CHECK(contains(box.run("merge a seed -o x").err, "seed"));
     REQUIRE(box.run("reference two-rooms --size 24x16 --samples 50:60 -o scene --quiet").code == 0);
     CHECK(contains(box.run("merge a scene -o x").err, "scene_sha256"));
@@ -94,7 +94,7 @@ TEST_CASE("program: reference refuses what makes no sense in one line", "[apps][
     for (const std::string& arguments :
          {std::string("--spp 0 -o x"), std::string("--samples 5:5 -o x"), std::string("--model half -o x"), std::string("--block 12 -o x"), std::string("--spp 4")}) {
         CAPTURE(arguments);
-        const Outcome outcome = box.run("reference" + kTiny + arguments);
+        const Outcome outcome = box.run("reference" + kTinyReference + arguments);
         CHECK(outcome.code == 2);
         CHECK(isOneLine(outcome.err));
         CHECK(box.empty());
@@ -104,7 +104,7 @@ TEST_CASE("program: reference refuses what makes no sense in one line", "[apps][
 TEST_CASE("program: compare finds each planted defect and fails by it", "[apps][compare]")
 {
     const Sandbox box;
-    REQUIRE(box.run("reference" + kTiny + "--spp 128 -o truth --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 128 -o truth --quiet").code == 0);
     plant(box, "same.exr", [](Image<Vec3>&) {});
     plant(box, "shift.exr", [](Image<Vec3>& p) { std::rotate(p.texels.begin(), p.texels.end() - 1, p.texels.end()); });
     plant(box, "gain.exr", [](Image<Vec3>& p) { for (Vec3& v : p.texels) v *= 1.02f; });
@@ -131,8 +131,8 @@ TEST_CASE("program: compare finds each planted defect and fails by it", "[apps][
 TEST_CASE("program: compare writes one HTML file that needs nothing else, and JSON", "[apps][compare]")
 {
     const Sandbox box;
-    REQUIRE(box.run("reference" + kTiny + "--spp 32 -o a --quiet").code == 0);
-    REQUIRE(box.run("reference" + kTiny + "--spp 32 --seed 1 -o b --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 32 -o a --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 32 --seed 1 -o b --quiet").code == 0);
     const Outcome outcome = box.run("compare a b -o result --layer all --regions 3x2 --json --fail-above rmse=1e-9");
     CHECK(outcome.code == 1);
     const Json json = Json::parse(outcome.out);
@@ -156,7 +156,7 @@ TEST_CASE("program: compare writes one HTML file that needs nothing else, and JS
 TEST_CASE("program: compare says in one line what does not fit", "[apps][compare]")
 {
     const Sandbox box;
-    REQUIRE(box.run("reference" + kTiny + "--spp 2 -o a --quiet").code == 0);
+    REQUIRE(box.run("reference" + kTinyReference + "--spp 2 -o a --quiet").code == 0);
     REQUIRE(box.run("reference cornell-box --size 16x16 --spp 2 -o b --quiet").code == 0);
     struct Case {
         std::string arguments, word;

@@ -11,7 +11,7 @@ using namespace lrsm;
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
+constexpr double kPiDouble = 3.14159265358979323846;
 
 /// The white furnace by brute force: integral of f_s <n.l> over the hemisphere, in double, in polar coordinates about the mirror direction,
 /// the polar angle cubed so that narrow lobes get points enough. Shares nothing with the kernel but the lobe itself.
@@ -27,11 +27,11 @@ double directionalAlbedo(float specular, double nDotV, float roughness)
     constexpr int kPolar = 256, kAzimuth = 192;
     double sum = 0;
     for (int i = 0; i < kPolar; ++i) {
-        const double s = (i + 0.5) / kPolar, angle = kPiD * s * s * s, dAngle = kPiD * 3 * s * s / kPolar;
+        const double s = (i + 0.5) / kPolar, angle = kPiDouble * s * s * s, dAngle = kPiDouble * 3 * s * s / kPolar;
         for (int k = 0; k < kAzimuth; ++k) {
-            const double azimuth = 2 * kPiD * (k + 0.5) / kAzimuth;
+            const double azimuth = 2 * kPiDouble * (k + 0.5) / kAzimuth;
             const glm::dvec3 l = std::cos(angle) * mirror + std::sin(angle) * (std::cos(azimuth) * side + std::sin(azimuth) * up);
-            if (l.z > 0) sum += double(evaluateSpecular(surface, Vec3(l), v).x) * std::sin(angle) * dAngle * (2 * kPiD / kAzimuth);
+            if (l.z > 0) sum += double(evaluateSpecular(surface, Vec3(l), v).x) * std::sin(angle) * dAngle * (2 * kPiDouble / kAzimuth);
         }
     }
     return sum;
@@ -99,7 +99,7 @@ TEST_CASE("shading: albedo E / pi, and the lobe's albedo times the specular cone
     const IndirectLight light = shadeIndirect(g, camera, Image<Vec3>(4, 1, irradiance), Image<Vec3>(4, 1, radiance));
     for (int x = 0; x < 3; ++x)
         for (int c = 0; c < 3; ++c)
-            CHECK(double(light.diffuse.at(x, 0)[c]) == Approx(double(g.albedo.at(x, 0)[c]) * double(irradiance[c]) / kPiD).epsilon(1e-6));
+            CHECK(double(light.diffuse.at(x, 0)[c]) == Approx(double(g.albedo.at(x, 0)[c]) * double(irradiance[c]) / kPiDouble).epsilon(1e-6));
     for (int c = 0; c < 3; ++c) {
         const double albedo = directionalAlbedo(g.specularColor.at(1, 0)[c], 0.5, 0.5f);
         CHECK(double(light.specular.at(1, 0)[c]) == Approx(albedo * double(radiance[c])).epsilon(double(kSpecularAlbedoMaxError)));

@@ -13,8 +13,8 @@ using namespace lrsm;
 
 namespace {
 
-constexpr double kPiDouble = 3.14159265358979323846;
-const Requirements kEverything;
+constexpr double kPiOfDirect = 3.14159265358979323846;
+const Requirements kDirectNeeds;
 
 void addMesh(Scene& scene, Mesh mesh, const Vec3& albedo, bool doubleSided)
 {
@@ -24,7 +24,7 @@ void addMesh(Scene& scene, Mesh mesh, const Vec3& albedo, bool doubleSided)
 }
 
 /// A floor, a slanted wall, a hovering square and a ball.
-Scene testScene()
+Scene directScene()
 {
     Scene scene;
     Mesh floor, wall, square, ball;
@@ -39,7 +39,7 @@ Scene testScene()
     updateBounds(scene);
     return scene;
 }
-Camera testCamera()
+Camera directCamera()
 {
     return lookAt({0.5f, 4, 6}, {0, 0.7f, -0.5f}, {0, 1, 0}, 0.9f);
 }
@@ -54,7 +54,7 @@ std::vector<Rsm> renderMaps(const Scene& scene, int resolution)
     std::vector<Rsm> maps;
     RsmSettings settings;
     settings.resolution = resolution;
-    for (const Light& light : scene.lights) maps.push_back(renderRsm(scene, light, kEverything, settings));
+    for (const Light& light : scene.lights) maps.push_back(renderRsm(scene, light, kDirectNeeds, settings));
     return maps;
 }
 
@@ -85,10 +85,10 @@ bool litByRay(const Scene& scene, const LightSample& sample, const Vec3& p, cons
 
 TEST_CASE("direct light: without shadows each pixel is albedo / pi times irradiance times cosine, summed over lights", "[conetrace][direct]")
 {
-    Scene scene = testScene();
+    Scene scene = directScene();
     scene.lights = {testLight(0), testLight(1)};
-    const GBuffer g = renderGBuffer(scene, testCamera(), kEverything, {96, 54});
-    const DirectResult direct = traceDirect(g, scene, testCamera(), {}, nullptr, kEverything, shadowsOf(Shadows::off));
+    const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {96, 54});
+    const DirectResult direct = traceDirect(g, scene, directCamera(), {}, nullptr, kDirectNeeds, shadowsOf(Shadows::off));
     for (std::size_t i = 0; i < g.objectId.texels.size(); ++i) {
         glm::dvec3 expected(0.0);
         if (g.covered(i))
@@ -96,7 +96,7 @@ TEST_CASE("direct light: without shadows each pixel is albedo / pi times irradia
                 const LightSample s = sampleLight(light, g.position.texels[i]);
                 const double cosine = glm::dot(glm::dvec3(g.normal.texels[i]), glm::dvec3(s.toLight));
                 if (glm::dot(g.geometricNormal.texels[i], s.toLight) > 0)
-                    expected += glm::dvec3(g.albedo.texels[i]) * glm::dvec3(s.irradiance) * std::max(0.0, cosine) / kPiDouble;
+                    expected += glm::dvec3(g.albedo.texels[i]) * glm::dvec3(s.irradiance) * std::max(0.0, cosine) / kPiOfDirect;
             }
         for (int k = 0; k < 3; ++k) REQUIRE(direct.radiance.texels[i][k] == Approx(expected[k]).epsilon(1e-5).margin(1e-6));
     }
@@ -104,10 +104,10 @@ TEST_CASE("direct light: without shadows each pixel is albedo / pi times irradia
 
 TEST_CASE("direct light: a surface's own specular lobe is added, and left out when not needed", "[conetrace][direct]")
 {
-    Scene scene = testScene();
+    Scene scene = directScene();
     for (Material& material : scene.materials) material.roughness = 0.4f;
     scene.lights = {testLight(0)};
-    const Camera camera = testCamera();
+    const Camera camera = directCamera();
     Requirements need;
     const GBuffer g = renderGBuffer(scene, camera, need, {64, 36});
     const DirectResult with = traceDirect(g, scene, camera, {}, nullptr, need, shadowsOf(Shadows::off));
@@ -132,9 +132,9 @@ TEST_CASE("direct light: a surface's own specular lobe is added, and left out wh
 TEST_CASE("hard shadows: equal to ray-cast shadows but for a rim of texels", "[conetrace][direct]")
 {
     const int kind = GENERATE(0, 1), resolution = GENERATE(256, 1024);
-    Scene scene = testScene();
+    Scene scene = directScene();
     scene.lights = {testLight(kind)};
-    const GBuffer g = renderGBuffer(scene, testCamera(), kEverything, {128, 72});
+    const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {128, 72});
     const std::vector<Rsm> maps = renderMaps(scene, resolution);
     int lit = 0, dark = 0, acne = 0, leaks = 0;
     for (std::size_t i = 0; i < g.objectId.texels.size(); ++i) {
@@ -207,16 +207,16 @@ TEST_CASE("shadow cones: open ground is lit, ground under a wide roof is dark", 
 
 TEST_CASE("direct light: any number of threads gives the same bits", "[conetrace][direct]")
 {
-    Scene scene = testScene();
+    Scene scene = directScene();
     scene.lights = {testLight(0), testLight(1)};
     const std::vector<Rsm> maps = renderMaps(scene, 128);
     const OpacityPyramid opacity = voxels(scene, OpacityAxes::directional);
-    const GBuffer g = renderGBuffer(scene, testCamera(), kEverything, {160, 90});
+    const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {160, 90});
     for (const Shadows mode : {Shadows::hard, Shadows::cone}) {
         std::vector<DirectResult> results;
         for (const int threads : {1, 2, 8}) {
             const ThreadLimit limit(threads);
-            results.push_back(traceDirect(g, scene, testCamera(), maps, &opacity, kEverything, shadowsOf(mode)));
+            results.push_back(traceDirect(g, scene, directCamera(), maps, &opacity, kDirectNeeds, shadowsOf(mode)));
         }
         CHECK(results[0].radiance.texels == results[1].radiance.texels);
         CHECK(results[0].radiance.texels == results[2].radiance.texels);
@@ -225,12 +225,12 @@ TEST_CASE("direct light: any number of threads gives the same bits", "[conetrace
 
 TEST_CASE("direct light: intensity times 2^k gives exactly 2^k times the radiance", "[conetrace][direct][invariance]")
 {
-    Scene scene = testScene();
+    Scene scene = directScene();
     scene.lights = {testLight(1)};
     const std::vector<Rsm> maps = renderMaps(scene, 128);
-    const GBuffer g = renderGBuffer(scene, testCamera(), kEverything, {64, 36});
-    const DirectResult one = traceDirect(g, scene, testCamera(), maps, nullptr, kEverything, shadowsOf(Shadows::hard));
+    const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {64, 36});
+    const DirectResult one = traceDirect(g, scene, directCamera(), maps, nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
     scene.lights[0].intensity *= 4096.0f;
-    const DirectResult scaled = traceDirect(g, scene, testCamera(), maps, nullptr, kEverything, shadowsOf(Shadows::hard));
+    const DirectResult scaled = traceDirect(g, scene, directCamera(), maps, nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
     for (std::size_t i = 0; i < one.radiance.texels.size(); ++i) REQUIRE(scaled.radiance.texels[i] == 4096.0f * one.radiance.texels[i]);
 }

@@ -12,18 +12,18 @@ namespace {
 
 using Random = std::mt19937_64;
 
-float uniform(Random& random, float low, float high)
+float between(Random& random, float low, float high)
 {
     return low + (high - low) * float(random() >> 40) * 0x1p-24f;
 }
 Vec3 pointIn(Random& random, const Aabb& box)
 {
-    return {uniform(random, box.min.x, box.max.x), uniform(random, box.min.y, box.max.y), uniform(random, box.min.z, box.max.z)};
+    return {between(random, box.min.x, box.max.x), between(random, box.min.y, box.max.y), between(random, box.min.z, box.max.z)};
 }
 Vec3 direction(Random& random)
 {
     for (;;) {
-        const Vec3 v(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+        const Vec3 v(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
         const float length = glm::length(v);
         if (length > 0.1f && length < 1.0f) return v / length;
     }
@@ -35,7 +35,7 @@ Light randomLight(Random& random, LightType type, const Aabb& around)
     light.position = pointIn(random, around);
     light.direction = direction(random);
     light.up = frameFromNormal(light.direction)[0];
-    light.outerConeAngle = uniform(random, 0.1f, 1.4f);
+    light.outerConeAngle = between(random, 0.1f, 1.4f);
     return light;
 }
 const Aabb kBounds{Vec3(-3, 0, -2), Vec3(5, 4, 7)};

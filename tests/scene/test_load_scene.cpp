@@ -11,7 +11,7 @@ using namespace lrsm;
 
 namespace {
 
-std::string errorOf(const std::string& scene, const SceneOptions& options = {})
+std::string loadError(const std::string& scene, const SceneOptions& options = {})
 {
     try {
         loadScene(scene, options);
@@ -26,12 +26,12 @@ std::string errorOf(const std::string& scene, const SceneOptions& options = {})
 TEST_CASE("each built-in loads by name, and an unknown name lists them", "[scene][load]")
 {
     REQUIRE_FALSE(builtinScenes().empty());
-    const std::string error = errorOf("no-such-scene");
+    const std::string error = loadError("no-such-scene");
     for (const BuiltinSceneInfo& info : builtinScenes()) {
         CHECK(loadScene(info.name, {}).triangleCount() > 0);
         CHECK(error.find(info.name) != std::string::npos);
     }
-    CHECK(errorOf("").find("built-in") != std::string::npos);
+    CHECK(loadError("").find("built-in") != std::string::npos);
 }
 
 TEST_CASE("a view file replaces camera and lights, and the notes about defaults go", "[scene][view]")
@@ -108,15 +108,15 @@ TEST_CASE("every mistake in a view file is one line that names the key", "[scene
     };
     const ScratchFolder folder;
     for (const Mistake& mistake : mistakes) {
-        const std::string error = errorOf(folder.write("view.json", mistake.text));
+        const std::string error = loadError(folder.write("view.json", mistake.text));
         CAPTURE(mistake.text, error);
         CHECK(error.find(mistake.mustSay) != std::string::npos);
         CHECK(error.find('\n') == std::string::npos);
         CHECK(error.find("view.json") != std::string::npos);
     }
-    CHECK(errorOf(folder.path("none.json")).find("no such file") != std::string::npos);
+    CHECK(loadError(folder.path("none.json")).find("no such file") != std::string::npos);
     folder.write("folder.json/inside", "");
-    CHECK(errorOf(folder.path("folder.json")).find("folder") != std::string::npos);
+    CHECK(loadError(folder.path("folder.json")).find("folder") != std::string::npos);
 }
 
 TEST_CASE("a camera is found by name before index, and a miss lists what there is", "[scene][camera]")

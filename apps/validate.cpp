@@ -1,0 +1,108 @@
+#include "apps/commands.h"
+#include "apps/common_options.h"
+#include "apps/describe.h"
+#include "apps/progress.h"
+#include "apps/validation_report.h"
+#include "core/base/check.h"
+#include "core/base/output_folder.h"
+#include "core/base/parallel.h"
+#include "core/report/chart.h"
+#include "core/report/html.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace lrsm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ValidateArguments : CommonOptions {
+    std::string output, equation, only;
+    bool extremes = false, noSpeed = false;
+};
+
+EquationReport runEquations(const ValidateArguments& options, Progress& progress)
+{
+    EquationOptions chosen;
+    if (!options.equation.empty()) chosen.equation = options.equation;
+    chosen.measureSpeed = !options.noSpeed;
+    chosen.progress = [&](const std::string& what, double fraction) { progress.show("equations: " + what, fraction); };
+    return checkEquations(chosen);
+}
+
+std::string pageOf(const std::vector<ValidationPart>& parts)
+{
+    HtmlPage page{"lrsm validate", "", "", chartStyle(), chartScript()};
+    for (const ValidationPart& part : parts) {
+        page.summary += (page.summary.empty() ? "" : " ") + part.verdict;
+        page.bodyHtml += part.html;
+    }
+    return htmlPage(page);
+}
+
+void writeResults(const std::string& path, const std::vector<ValidationPart>& parts, const Json& json)
+{
+    OutputFolder folder(path);
+    folder.write("validate.json", jsonText(json));
+    folder.write("report.html", pageOf(parts));
+    for (const ValidationPart& part : parts)
+        for (const auto& [name, text] : part.csv) folder.write(name, text);
+    folder.commit();
+}
+
+int runValidate(const ValidateArguments& options)
+{
+    if (options.extremes && !options.equation.empty()) throw InputError("--equation " + options.equation, "has no meaning with --extremes");
+    if (!options.only.empty() && !options.extremes) throw InputError("--only " + options.only, "chooses among the extremes; add --extremes");
+    if (!options.output.empty()) OutputFolder probe(options.output);  // an hour's work must not end in a folder that cannot be written
+
+    const ThreadLimit threads(options.threads);
+    Progress progress(options.quiet);
+    Json json = {{"version", LRSM_VERSION}};
+    std::vector<ValidationPart> parts;
+    if (options.extremes) {
+        ExtremesOptions chosen;
+        chosen.only = options.only;
+        chosen.progress = [&](const std::string& what, double fraction) { progress.show("extremes: " + what, fraction); };
+        const ExtremesReport report = runExtremes(chosen);
+        if (report.results.empty() && report.curves.empty()) throw InputError("--only " + options.only, "names no group, case or curve of the catalogue");
+        parts.push_back(describeExtremes(report, json["extremes"]));
+    } else {
+        parts.push_back(describeEquations(runEquations(options, progress), json["equations"]));
+    }
+    progress.clear();
+
+    const bool held = std::all_of(parts.begin(), parts.end(), [](const ValidationPart& part) { return part.held; });
+    json["held"] = held;
+    if (!options.output.empty()) writeResults(options.output, parts, json);
+    if (options.json) std::cout << jsonText(json);
+    else if (!options.quiet)
+        for (const ValidationPart& part : parts) std::cout << part.text << part.verdict << "\n";
+    if (!options.output.empty() && !options.quiet && !options.json) std::cout << options.output << ": report.html, validate.json, CSV\n";
+    return held ? 0 : 1;
+}
+
+}  // namespace
+
+Command addValidate(CLI::App& program)
+{
+    CLI::App* parser = program.add_subcommand("validate", "Hold every equation against its oracle, and find where error enters; 1 if a bound is broken");
+    const auto options = std::make_shared<ValidateArguments>();
+    options->size = "320x180";
+    addSceneOptions(*parser, *options);
+    addSettingOptions(*parser, *options);
+    addPictureOptions(*parser, *options);
+    addRunOptions(*parser, *options);
+    parser->add_option("-o,--output", options->output, "folder for report.html, validate.json and CSV; they appear whole or not at all");
+    parser->add_option("--equation", options->equation, "one equation alone: its number, or sec3, sec5, table1, fig7, base");
+    parser->add_flag("--extremes", options->extremes, "the catalogue of extreme inputs instead");
+    parser->add_option("--only", options->only, "with --extremes: cases and curves whose group or name contains this");
+    parser->add_flag("--no-speed", options->noSpeed, "do not measure times");
+    return {parser, [options] { return runValidate(*options); }};
+}
+
+}  // namespace lrsm

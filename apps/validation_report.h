@@ -1,0 +1,27 @@
+#pragma once
+
+#include "validation/equations/check_equations.h"
+#include "validation/extremes/extremes.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What `lrsm validate` found, for a terminal, for programs and for a page.
+namespace lrsm {
+
+struct ValidationPart {
+    std::string name;                                     ///< key in validate.json: "equations"
+    bool held = false;
+    std::string verdict;                                  ///< one sentence
+    std::string text;                                     ///< tables for a terminal
+    std::string html;                                     ///< tables and plots for the page
+    std::vector<std::pair<std::string, std::string>> csv; ///< file name, content
+};
+
+/// The part's data go to `json`.
+ValidationPart describeEquations(const EquationReport& report, nlohmann::ordered_json& json);
+ValidationPart describeExtremes(const ExtremesReport& report, nlohmann::ordered_json& json);
+
+}  // namespace lrsm

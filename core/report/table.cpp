@@ -1,0 +1,76 @@
+#include "core/report/table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace lrsm {
+namespace {
+
+/// Bytes that are no continuation of a UTF-8 character: what a terminal shows.
+std::size_t width(const std::string& text)
+{
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+std::string csvCell(const std::string& cell)
+{
+    if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
+    std::string quoted = "\"";
+    for (const char letter : cell) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+    return quoted + "\"";
+}
+
+}  // namespace
+
+std::string textTable(const ReportTable& table)
+{
+    if (table.rows.empty()) return {};
+    std::vector<std::size_t> widths;
+    const auto widen = [&](const std::vector<std::string>& row) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+    };
+    widen(table.head);
+    for (const auto& row : table.rows) widen(row);
+
+    std::string text = table.title.empty() ? "" : table.title + "\n";
+    const auto line = [&](const std::vector<std::string>& row) {
+        std::string out = " ";
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string padding(widths[i] - width(row[i]), ' ');
+            out += i == 0 ? " " + row[i] + padding : "  " + padding + row[i];
+        }
+        text += out.substr(0, out.find_last_not_of(' ') + 1) + "\n";
+    };
+    line(table.head);
+    for (const auto& row : table.rows) line(row);
+    return text;
+}
+
+std::string csvTable(const ReportTable& table)
+{
+    std::string text;
+    const auto line = [&](const std::vector<std::string>& row) {
+        for (std::size_t i = 0; i < row.size(); ++i) text += (i ? "," : "") + csvCell(row[i]);
+        text += "\n";
+    };
+    line(table.head);
+    for (const auto& row : table.rows) line(row);
+    return text;
+}
+
+std::string exactNumber(double value)
+{
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string shortNumber(double value)
+{
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return digits;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// Tables, written for a terminal, for a spreadsheet, and (html.h) for a page.
+namespace lrsm {
+
+struct ReportTable {
+    std::string title;
+    std::vector<std::string> head;
+    /// A row whose first cell begins with "!" tells of a failure: pages colour it, terminals show the mark.
+    std::vector<std::vector<std::string>> rows;
+};
+
+/// Columns aligned with spaces: the first to the left, the others to the right. Empty without rows.
+std::string textTable(const ReportTable& table);
+
+/// RFC 4180, with "\n" for line ends; the head is the first line, the title is not written.
+std::string csvTable(const ReportTable& table);
+
+/// The shortest digits that restore the value's bits; "nan", "inf".
+std::string exactNumber(double value);
+
+/// Three significant digits, for people: "0.0123", "1.2e-07", "0".
+std::string shortNumber(double value);
+
+}  // namespace lrsm
