@@ -2,6 +2,7 @@
 
 #include "validation/equations/check_equations.h"
 #include "validation/extremes/extremes.h"
+#include "validation/ladder/ladder.h"
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -22,6 +23,8 @@ struct ValidationPart {
 
 /// The part's data go to `json`.
 ValidationPart describeEquations(const EquationReport& report, nlohmann::ordered_json& json);
+/// Measures and explains; there is no bound to break.
+ValidationPart describeLadders(const std::vector<LadderScene>& scenes, nlohmann::ordered_json& json);
 ValidationPart describeExtremes(const ExtremesReport& report, nlohmann::ordered_json& json);
 
 }  // namespace lrsm
