@@ -44,7 +44,7 @@ enum Word : std::size_t {
     caps = 27, caps2 = 28,
     dxgiFormat = 32, resourceDimension = 33, arraySize = 35,
 };
-constexpr std::uint32_t kMagic = 0x20534444, kHeaderSize = 124, kPixelFormatSize = 32, kFourCC = 0x4, kDx10 = 0x30315844;
+constexpr std::uint32_t kDdsMagic = 0x20534444, kHeaderSize = 124, kPixelFormatSize = 32, kFourCC = 0x4, kDx10 = 0x30315844;
 constexpr std::uint32_t kFlags = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000;  // caps, height, width, pitch, pixel format, mip count
 constexpr std::uint32_t kFlagDepth = 0x800000;
 constexpr std::uint32_t kCapsTexture = 0x1000, kCapsComplex = 0x8, kCapsMipmap = 0x400000, kCaps2Volume = 0x200000;
@@ -99,7 +99,7 @@ std::vector<std::byte> encodeDds(const DdsTexture& t)
 {
     assert(t.texels.size() == t.byteSize() && !(t.volume && t.layers != 1));
     std::array<std::uint32_t, kWords> words{};
-    words[magic] = kMagic;
+    words[magic] = kDdsMagic;
     words[size] = kHeaderSize;
     words[flags] = kFlags | (t.volume ? kFlagDepth : 0);
     words[height] = t.height;
@@ -127,7 +127,7 @@ DdsTexture decodeDds(std::span<const std::byte> file, const std::string& place)
     const auto fail = [&](const std::string& why) -> InputError { return {place, why}; };
     std::array<std::uint32_t, kWords> words{};
     std::memcpy(words.data(), file.data(), std::min(file.size(), sizeof words));
-    if (words[magic] != kMagic) throw fail("is no DDS file");
+    if (words[magic] != kDdsMagic) throw fail("is no DDS file");
     if (words[size] != kHeaderSize || words[pixelFormatSize] != kPixelFormatSize) throw fail("is no readable DDS: its header has a wrong size");
     if (!(words[pixelFormatFlags] & kFourCC) || words[fourCC] != kDx10) throw fail("has no DX10 header; save it with one (its DXGI format is then known)");
     if (file.size() < sizeof words) throw fail("is no readable DDS: it ends within its header");

@@ -24,7 +24,7 @@ struct DtypeRow {
 constexpr std::array<DtypeRow, 8> kDtypes = {{{"u1", "|u1", 1}, {"u2", "<u2", 2}, {"u4", "<u4", 4}, {"u8", "<u8", 8},
                                              {"i4", "<i4", 4}, {"f2", "<f2", 2}, {"f4", "<f4", 4}, {"f8", "<f8", 8}}};
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::size_t kPreamble = 10;  // magic, version, header length
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kMaxAxes = 8;
@@ -165,7 +165,7 @@ std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& sh
     text += '\n';
 
     std::vector<std::byte> file(kPreamble + text.size() + bytes.size());
-    std::memcpy(file.data(), kMagic.data(), kMagic.size());
+    std::memcpy(file.data(), kNpyMagic.data(), kNpyMagic.size());
     file[6] = std::byte{1};
     file[7] = std::byte{0};
     file[8] = static_cast<std::byte>(text.size() & 255);
@@ -178,7 +178,7 @@ std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& sh
 NpyArray decodeNpy(std::span<const std::byte> file, const std::string& place)
 {
     const auto* text = reinterpret_cast<const char*>(file.data());
-    if (file.size() < kPreamble || std::string_view(text, kMagic.size()) != kMagic) throw InputError(place, "is no .npy file");
+    if (file.size() < kPreamble || std::string_view(text, kNpyMagic.size()) != kNpyMagic) throw InputError(place, "is no .npy file");
     if (file[6] != std::byte{1} || file[7] != std::byte{0})
         throw InputError(place, "is .npy of version " + std::to_string(int(file[6])) + "." + std::to_string(int(file[7])) + "; only 1.0 is read");
     const std::size_t headerSize = static_cast<std::size_t>(file[8]) | static_cast<std::size_t>(file[9]) << 8;
