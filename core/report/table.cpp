@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <string_view>
 
 namespace lrsm {
 namespace {
@@ -11,6 +12,20 @@ namespace {
 std::size_t width(const std::string& text)
 {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+bool isNumber(const std::string& cell)
+{
+    return cell.empty() || std::string_view("0123456789+-.").find(cell.front()) != std::string_view::npos || cell == "nan" || cell == "inf";
+}
+
+/// Which columns hold numbers alone: those stand to the right.
+std::vector<bool> numberColumns(const ReportTable& table)
+{
+    std::vector<bool> numbers(table.head.size(), true);
+    for (const auto& row : table.rows)
+        for (std::size_t i = 0; i < row.size() && i < numbers.size(); ++i) numbers[i] = numbers[i] && isNumber(row[i]);
+    return numbers;
 }
 
 std::string csvCell(const std::string& cell)
@@ -35,11 +50,13 @@ std::string textTable(const ReportTable& table)
     for (const auto& row : table.rows) widen(row);
 
     std::string text = table.title.empty() ? "" : table.title + "\n";
+    std::vector<bool> numbers = numberColumns(table);
+    numbers.resize(widths.size(), false);
     const auto line = [&](const std::vector<std::string>& row) {
-        std::string out = " ";
+        std::string out;
         for (std::size_t i = 0; i < row.size(); ++i) {
             const std::string padding(widths[i] - width(row[i]), ' ');
-            out += i == 0 ? " " + row[i] + padding : "  " + padding + row[i];
+            out += "  " + (numbers[i] ? padding + row[i] : row[i] + padding);
         }
         text += out.substr(0, out.find_last_not_of(' ') + 1) + "\n";
     };

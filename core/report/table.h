@@ -13,7 +13,7 @@ struct ReportTable {
     std::vector<std::vector<std::string>> rows;
 };
 
-/// Columns aligned with spaces: the first to the left, the others to the right. Empty without rows.
+/// Columns aligned with spaces, those of numbers alone to the right. Empty without rows.
 std::string textTable(const ReportTable& table);
 
 /// RFC 4180, with "\n" for line ends; the head is the first line, the title is not written.

@@ -1,7 +1,9 @@
 #include "core/report/chart.h"
 #include "core/report/comparison.h"
+#include "core/report/table.h"
 
 #include <catch.h>
+#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -64,4 +66,17 @@ TEST_CASE("a failed row is marked and shows no mark of its own", "[report]")
     const std::string html = tableHtml({"t", {"a", "b"}, {{"!bad", "1"}, {"good", "2"}}});
     CHECK(html.find("<tr class=\"failed\"><td>bad</td>") != std::string::npos);
     CHECK(html.find("<tr><td>good</td>") != std::string::npos);
+}
+
+TEST_CASE("a table aligns numbers to the right and counts characters, not bytes", "[report]")
+{
+    const ReportTable table{"t", {"name", "value"}, {{"\u03b1", "1"}, {"bc", "-22"}}};
+    CHECK(textTable(table) == "t\n  name  value\n  \u03b1         1\n  bc      -22\n");
+    CHECK(textTable({"t", {"name"}, {}}).empty());
+}
+
+TEST_CASE("a CSV cell comes back whole", "[report]")
+{
+    CHECK(csvTable({"not written", {"a", "b"}, {{"1,5", "say \"x\""}, {"two\nlines", ""}}}) == "a,b\n\"1,5\",\"say \"\"x\"\"\"\n\"two\nlines\",\n");
+    for (const double value : {0.1, 1.0 / 3.0, 5e-324, -1.7976931348623157e308}) CHECK(std::strtod(exactNumber(value).c_str(), nullptr) == value);
 }
