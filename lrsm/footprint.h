@@ -25,6 +25,10 @@ struct LrsmFootprint {
     int taps = 0;                 ///< 4 on a whole level, else 8
 };
 
+/// Bound on the error of one texel's weight with exact fractions (a map's edge is a power of two, so u n - 0.5 loses nothing that matters).
+/// Fractions in 1/256 give exact products.
+inline constexpr float kFootprintWeightMaxError = 2e-7f;
+
 namespace detail {
 
 /// floor for |x| < 2^31, without a library call.

@@ -11,6 +11,7 @@ namespace lrsm {
 
 /// Variance floor in warped units (depth in [0, 1] of the layer): what UNORM16 moments can resolve.
 inline constexpr float kVarianceFloor = 2.5e-5f;
+inline constexpr double kVarianceFloorSlack = 1.15;  ///< it is at most this much above the largest variance that rounding leaves of a flat texel
 
 /// Bounds on the absolute error of Phi, tested against 50-digit arithmetic. `table` has two parts: the interpolation error h^2/8 max|Phi''|
 /// for N entries over [-5, 5], which tableCdfMaxError() adds to the constant part (the tails cut at +-5, Phi(-5) = 2.9e-7, and float rounding).

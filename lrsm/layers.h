@@ -56,9 +56,14 @@ std::size_t predictLayerBytes(int rsmResolution);
 /// The (a+1)(b+1) ranges for this RSM (Sec. 4.3), empty layers included; nearest depth slice first, the <n.l> slices of one together.
 /// Neighbouring depth ranges overlap by exactly delta, centred on the cut between equal slices. Without an overlap (or where a slice is so
 /// thin that delta rounds to 0) they are a partition. A range is never thinner than 2^-16 / depthLayers, even if all depths are equal.
+/// Edges are within kPartitionMaxError of where equal slices put them: whole ULPs of the far end keep overlaps exact.
+inline constexpr float kPartitionMaxError = 2.5e-7f;
 std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings);
 
 /// Each 2x2 RSM block merges per layer into the base level; full mip chains follow (2x2 box in float32, fixed order, converted per level).
+/// In float32 storage every texel is the mean over the RSM's texels below it, within kRadianceMeanMaxError of the largest radiance and
+/// kLayerNormalMaxError, kLayerDepthMaxError of 1; alpha is exact, and the layers of a partition sum to the map's mean within kLayerSumMaxError of it.
+inline constexpr float kRadianceMeanMaxError = 1e-7f, kLayerNormalMaxError = 1.2e-7f, kLayerDepthMaxError = 2.5e-7f, kLayerSumMaxError = 1.2e-7f;
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings);
 
 /// Linear depth -> the layer's own [0, 1], in which its z and z^2 are stored. Widths (radii) scale by 1 / (depthMax - depthMin).
@@ -73,7 +78,9 @@ inline bool touches(const LayerRange& range, float zc, float r)
     return range.depthMin <= zc + r && range.depthMax >= zc - r;
 }
 
-/// Eq. 15: f(z_c) with smoothstep k, clamped to [0, 1]; 0 outside the range, 1 at an end that does not decay.
+/// Eq. 15: f(z_c) with smoothstep k, clamped to [0, 1]; 0 outside the range, 1 at an end that does not decay. Error <= kDecayMaxError; summed over
+/// the ranges of partition() it is 1 within kDecaySumMaxError.
+inline constexpr float kDecayMaxError = 3e-7f, kDecaySumMaxError = 3e-7f;
 float decay(const LayerRange& range, float zc);
 
 }  // namespace lrsm

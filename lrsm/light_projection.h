@@ -30,6 +30,9 @@ struct LightSpacePoint {
     float texelSize = 1.0f;    ///< metres, edge of one RSM texel at this distance, across the light's axis
     bool valid = false;        ///< in front of the light (the map's borders are the sampler's matter)
 };
+/// Errors, for a light as near to its scene as the scene is wide: u, v and depth absolute, texelSize relative.
+inline constexpr float kProjectionMaxError = 5e-7f;             ///< spot, cube face
+inline constexpr float kDirectionalProjectionMaxError = 1e-7f;
 LightSpacePoint projectToLight(const LightProjection& projection, const Vec3& pWorld);
 
 /// World-to-clip for the rasterizer; z/w in [0, 1].

@@ -14,7 +14,8 @@ inline FilteredTexel sampleLayer(const Lrsm& lrsm, int layer, float u, float v, 
 }
 
 /// log2(diameter in LRSM texels) + bias, clamped to >= minLevel: Sec. 5's mip level (its `log` is base 2).
-/// An LRSM texel is two RSM texels wide. A diameter of 0 gives minLevel.
+/// An LRSM texel is two RSM texels wide. A diameter of 0 gives minLevel. Error <= kLrsmLevelMaxError for results below 32.
+inline constexpr float kLrsmLevelMaxError = 3e-6f;
 inline float lrsmLevel(float diameterMetres, float rsmTexelSizeMetres, float bias, float minLevel)
 {
     const float diameterTexels = diameterMetres / (2.0f * rsmTexelSizeMetres);
@@ -22,7 +23,8 @@ inline float lrsmLevel(float diameterMetres, float rsmTexelSizeMetres, float bia
 }
 
 /// Eq. 8: <nBar . v> clamped to >= 0; nBar = sum alpha n / sum alpha, not renormalised.
-/// 0 where alpha is 0.
+/// 0 where alpha is 0. Error <= kNormalTermMaxError for means of length <= 1.
+inline constexpr float kNormalTermMaxError = 3e-7f;
 inline float normalTerm(const FilteredTexel& texel, const Vec3& toReceiver)
 {
     const float facing = glm::dot(texel.normal, toReceiver);
@@ -43,7 +45,9 @@ struct DepthMoments {
     float mean = 0.0f, variance = 0.0f;
     bool negative = false;  ///< the raw variance was below 0
 };
-/// All zero where alpha is 0.
+/// All zero where alpha is 0. Errors, of what the given sums say: <= kDepthMeanMaxError and kDepthVarianceMaxError for depths in [0, 1].
+inline constexpr float kDepthMeanMaxError = 3e-8f;
+inline constexpr float kDepthVarianceMaxError = 2e-7f;
 inline DepthMoments depthMoments(const FilteredTexel& texel, float floor = kVarianceFloor)
 {
     if (!(texel.depthAlpha > 0.0f)) return {};
@@ -72,7 +76,10 @@ struct LayerTerms {
 };
 
 /// Algorithm 1: outgoing radiance of one cone sample from one light's LRSM (Eq. 5-15).
-/// `terms`, when given, receives each sampled layer's terms.
+/// `terms`, when given, receives each sampled layer's terms. Error against exact arithmetic on the stored texels, for the projected point as
+/// it is, <= kSampleLrsmMaxError times the map's largest radiance: a variance of 2.5e-5 is the difference of two floats near 1. Footprints that
+/// hold one value keep kSampleLrsmFlatMaxError.
+inline constexpr float kSampleLrsmMaxError = 3e-4f, kSampleLrsmFlatMaxError = 6e-6f;
 Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& settings, const NormalCdf& phi,
                 std::vector<LayerTerms>* terms = nullptr);
 

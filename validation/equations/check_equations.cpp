@@ -20,6 +20,9 @@ const std::vector<Group>& groups()
 {
     static const std::vector<Group> all = {
         {"Eq. 12: normal distribution and visible fraction", {"12"}, checkGaussian, 6},
+        {"Eq. 8, 10, 11: terms of Algorithm 1", {"8", "10", "11", "sec5"}, checkTerms, 1},
+        {"Eq. 5, 9, 14, 15: sampler, Algorithm 1", {"5", "9", "14", "15"}, checkSample, 2},
+        {"Eq. 6, 13-15: layers and their means", {"6", "8", "10", "11", "13", "14", "15", "table1"}, checkLayers, 2},
         {"Table 1: formats", {"table1"}, checkFormats, 2},
         {"elementary functions", {"base"}, checkElementary, 4},
     };

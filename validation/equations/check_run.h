@@ -62,5 +62,8 @@ double medianNanoseconds(std::size_t inputs, const Call& call)
 void checkElementary(CheckRun& run);       // "base"
 void checkFormats(CheckRun& run);          // "table1"
 void checkGaussian(CheckRun& run);         // "12"
+void checkTerms(CheckRun& run);            // "8", "10", "11", "sec5"
+void checkLayers(CheckRun& run);           // "6", "8", "10", "11", "13", "14", "15", "table1"
+void checkSample(CheckRun& run);           // "5", "9", "14", "15"
 
 }  // namespace lrsm

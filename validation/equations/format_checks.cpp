@@ -2,33 +2,12 @@
 #include "core/base/formats.h"
 
 #include "validation/equations/check_run.h"
+#include "validation/equations/format_oracle.h"
 
 namespace lrsm {
 namespace {
 
-/// What a half's bits mean, read from the format's definition in double.
-double valueOfHalf(std::uint32_t bits)
-{
-    const int exponent = static_cast<int>((bits >> 10) & 31u), fraction = static_cast<int>(bits & 1023u);
-    const double magnitude = exponent == 31 ? std::numeric_limits<double>::infinity()
-                             : exponent     ? std::ldexp(1024 + fraction, exponent - 25)
-                                            : std::ldexp(fraction, -24);
-    return (bits & 0x8000u) ? -magnitude : magnitude;
-}
-
-/// The half that a finite magnitude becomes, by dividing by the spacing of halves there.
-double halfOf(double magnitude, HalfRounding rounding)
-{
-    if (magnitude == 0.0) return 0.0;
-    int exponent = 0;
-    std::frexp(magnitude, &exponent);
-    const double spacing = std::ldexp(1.0, std::max(exponent - 11, -24)), count = magnitude / spacing, whole = std::floor(count);
-    double rounded = whole;
-    if (rounding == HalfRounding::nearestEven && (count - whole > 0.5 || (count - whole == 0.5 && std::fmod(whole, 2.0) == 1.0))) rounded += 1.0;
-    const double value = rounded * spacing;
-    if (value <= 65504.0) return value;
-    return rounding == HalfRounding::d3d ? 65504.0 : std::numeric_limits<double>::infinity();
-}
+using oracle::valueOfHalf;
 
 /// Floats about the half `bits`: itself, the middle to the next, and their neighbours.
 float aboutHalf(std::uint64_t i)
@@ -62,7 +41,7 @@ void checkHalf(CheckRun& run)
     for (const HalfRounding rounding : {HalfRounding::d3d, HalfRounding::nearestEven}) {
         const auto wrong = [rounding](float x) {
             const float got = floatFromHalf(halfFromFloat(x, rounding));
-            const double expected = std::isinf(x) ? std::abs(double(x)) : halfOf(std::abs(double(x)), rounding);
+            const double expected = std::isinf(x) ? std::abs(double(x)) : oracle::half(std::abs(double(x)), rounding);
             return std::abs(double(got)) == expected && std::signbit(got) == std::signbit(x) ? 0.0 : 1.0;
         };
         auto beside = exhaust(0x10000u * 8u, [&](std::uint64_t i) { return ((i / 8) & 0x7fffu) >= 0x7c00u ? -1.0 : wrong(aboutHalf(i)); });
