@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -78,18 +77,22 @@ Verdict hold(Json& golden, bool bless)
     return difference.empty() ? Verdict::same : Verdict::differs;
 }
 
-int run(const std::string& path, int threads, const std::string& reason)
+int run(const std::string& path, int threads, const std::string& only, const std::string& reason)
 {
     Json file = Json::parse(readFile(path));
     const ThreadLimit limit(threads);
     Json changed = Json::array();
     int skipped = 0;
+    int held = 0;
     for (Json& golden : file.at("frames")) {
+        if (!only.empty() && golden.at("name") != only) continue;
+        ++held;
         const Verdict verdict = hold(golden, !reason.empty());
         if (verdict == Verdict::differs) changed.push_back(golden.at("name"));
         if (verdict == Verdict::skipped) ++skipped;
     }
-    std::printf("%zu frames, %zu differ, %d skipped\n", file["frames"].size(), changed.size(), skipped);
+    std::printf("%d frames, %zu differ, %d skipped\n", held, changed.size(), skipped);
+    if (held == 0) throw InputError("--only " + only, "names no frame");
     if (changed.empty() || reason.empty()) return changed.empty() ? 0 : 1;
 
     file["history"].push_back({{"reason", reason}, {"frames", changed}});
@@ -103,13 +106,13 @@ int run(const std::string& path, int threads, const std::string& reason)
 
 int main(int argc, char** argv)
 {
-    const bool bless = argc == 5 && std::strcmp(argv[3], "--bless") == 0 && *argv[4];
-    if (argc != 3 && !bless) {
-        std::fprintf(stderr, "usage: lrsm_golden GOLDENS.json THREADS [--bless REASON]\n");
+    const std::string option = argc == 5 ? argv[3] : "", value = argc == 5 ? argv[4] : "";
+    if (argc != 3 && (value.empty() || (option != "--only" && option != "--bless"))) {
+        std::fprintf(stderr, "usage: lrsm_golden GOLDENS.json THREADS [--only NAME | --bless REASON]\n");
         return 2;
     }
     try {
-        return run(argv[1], std::atoi(argv[2]), bless ? argv[4] : "");
+        return run(argv[1], std::atoi(argv[2]), option == "--only" ? value : "", option == "--bless" ? value : "");
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lrsm_golden: %s\n", error.what());
         return 2;
