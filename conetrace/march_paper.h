@@ -48,10 +48,11 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
         // Outgoing radiance of the sample, all lights (Algorithm 1), and Eq. 1.
         const ConeSample sample{pWorld, radius * frame.voxelSize,
                                 settings.push == 0.0f ? -ray.direction : glm::normalize(ray.originWorld - pWorld)};
+        if constexpr (RecordsLookups<Recorder>) recorder.lookup(sample);
         Vec3 outgoing(0.0f);
         for (std::size_t light = 0; light < world.lrsms.size(); ++light) {
             const Lrsm& lrsm = world.lrsms[light];
-            if constexpr (Recorder::active) {
+            if constexpr (RecordsLayers<Recorder>) {
                 std::vector<LayerTerms> terms;
                 outgoing += sampleLrsm(lrsm, sample, settings, world.phi, &terms);
                 for (const LayerTerms& term : terms) recorder.layer(static_cast<int>(light), term, transmittance);

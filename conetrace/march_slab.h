@@ -112,7 +112,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const Vec3 radiance(radianceSum[0], radianceSum[1], radianceSum[2]);
         const Vec3 outgoing = (transmittance * weight) * radiance;
         emission += outgoing;
-        if constexpr (Recorder::active)
+        if constexpr (RecordsLayers<Recorder>)
             recorder.layer(light, {layer, 1.0f, radiance, depth[2], rate, warpedMean, warpedVariance, weight, outgoing}, transmittance);
     }
     return emission;
@@ -154,9 +154,12 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
             recorder.step({&step, pWorld, density, density * (step.end - step.begin), transmittanceOf(depth, settings)});
 
         // Where neither this nor the last tap met a voxel there is no surface to emit.
-        if (occupied || wasOccupied)
+        if (occupied || wasOccupied) {
+            if constexpr (RecordsLookups<Recorder>)
+                recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * frame.voxelSize, -ray.direction});
             for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
                 result.radiance += slabEmission(world, light, ray, pWorld, schedule, i, scratch, counts, recorder);
+        }
         wasOccupied = occupied;
 
         // Done when even the delayed transmittance is spent.

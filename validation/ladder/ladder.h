@@ -52,6 +52,7 @@ struct LadderSample {
     double level = 0.0;       ///< LRSM level of the footprint, before clamping
     double slope = 1.0;       ///< mean <n.l> of the RSM texels inside the sphere; of all in its footprint where none is inside
     int layers = 0;           ///< layers that rung Eq. 15 samples and finds light in
+    double voxelLevel = 0.0;  ///< mip level of the step's voxel lookup
     bool hasSurface = false;  ///< some ray of Eq. 2 met a surface inside the sphere: L is defined
     double noise = 0.0;       ///< estimated standard deviation of the rung Eq. 2
     double radiance[kRadianceRungs] = {};
@@ -86,7 +87,7 @@ struct CurveBin {
 };
 /// Error against one property of the sample. Bins hold about equal counts, or one value each for small integers; none is empty.
 struct LadderCurve {
-    std::string variable, unit;  ///< "r_c" in metres, "level", "slope", "layers", "distance"
+    std::string variable, unit;  ///< radiance: "r_c", "level", "slope", "layers"; visibility: "distance", "r_c", "voxel level"
     std::vector<CurveBin> bins;
 };
 
@@ -99,7 +100,7 @@ struct WorstCase {
 };
 
 struct Ladder {
-    std::vector<RungStatistics> rungs;
+    std::vector<RungStatistics> rungs;   ///< top first
     std::vector<double> histogramEdges;  ///< symmetric about 0; the first and last bins also hold what lies beyond
     std::vector<LadderCurve> curves;
     std::vector<WorstCase> worst;        ///< worstPerRung for each rung, then worstPerRung of the whole way

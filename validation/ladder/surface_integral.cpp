@@ -1,0 +1,74 @@
+#include "validation/ladder/surface_integral.h"
+
+#include "core/base/elementary.h"
+#include "core/base/rng.h"
+#include "reference/directions.h"
+
+namespace lrsm {
+namespace {
+
+enum class Use : std::uint32_t { disk = 1, bundle = 2 };
+
+/// Jittered point of stratum (i, j) of side^2.
+UnitPoint stratum(int i, int j, int side, const SampleKey& key, Use use)
+{
+    const Philox4 words = philox({key.pixel, key.coneAndStep, static_cast<std::uint32_t>(j * side + i), static_cast<std::uint32_t>(use)},
+                                 {static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32)});
+    const auto n = static_cast<float>(side);
+    return {(static_cast<float>(i) + unitFloat(words[0])) / n, (static_cast<float>(j) + unitFloat(words[1])) / n};
+}
+
+/// Unit square to unit disk, equal areas to equal areas.
+Vec2 onDisk(const UnitPoint& xi)
+{
+    const SinCos turn = sinCos(2.0 * 3.14159265358979323846 * double(xi.v));
+    const double radius = std::sqrt(double(xi.u));
+    return {static_cast<float>(radius * turn.cos), static_cast<float>(radius * turn.sin)};
+}
+
+struct RaySum {
+    Vec3 radiance{0.0f};
+    int hits = 0;
+    double mean() const { return hits ? double(radiance.x + radiance.y + radiance.z) / (3.0 * hits) : 0.0; }
+};
+
+}  // namespace
+
+SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int side, const SampleKey& key)
+{
+    const Mat3 frame = frameFromNormal(sphere.toReceiver);
+    PathRandom unused({}, {});  // a single bounce draws nothing
+    RaySum halves[2];
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            const Vec2 at = sphere.radius * onDisk(stratum(i, j, side, key, Use::disk));
+            const float reach = std::sqrt(std::max(0.0f, sphere.radius * sphere.radius - glm::dot(at, at)));
+            const Vec3 entry = sphere.centre + frame * Vec3(at, reach);
+            bool hit = false;
+            const Vec3 radiance = incomingRadiance(tracer, {entry, -sphere.toReceiver, 0.0f, 2.0f * reach, RayKind::bounce}, Transport::single, unused, hit);
+            if (!hit) continue;
+            RaySum& half = halves[(i + j) % 2];
+            half.radiance += radiance;
+            ++half.hits;
+        }
+
+    const int hits = halves[0].hits + halves[1].hits;
+    SurfaceIntegral integral;
+    if (hits == 0) return integral;
+    integral.radiance = (halves[0].radiance + halves[1].radiance) / static_cast<float>(hits);
+    integral.coverage = double(hits) / (double(side) * side);
+    integral.noise = 0.5 * std::abs(halves[0].mean() - halves[1].mean());
+    return integral;
+}
+
+std::vector<Vec3> coneBundle(const Vec3& axis, float tanHalf, int side, const SampleKey& key)
+{
+    const float cosHalf = 1.0f / std::sqrt(1.0f + tanHalf * tanHalf);
+    std::vector<Vec3> directions;
+    directions.reserve(std::size_t(side) * std::size_t(side));
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) directions.push_back(coneDirection(axis, cosHalf, stratum(i, j, side, key, Use::bundle)));
+    return directions;
+}
+
+}  // namespace lrsm
