@@ -26,6 +26,20 @@ Vec2 onDisk(const UnitPoint& xi)
     return {static_cast<float>(radius * turn.cos), static_cast<float>(radius * turn.sin)};
 }
 
+/// <n.v> of Eq. 2 is clamped to 0 at the back of a single-sided surface.
+bool facesRay(const Scene& scene, const RayHit& hit)
+{
+    return hit.front || scene.materials[std::size_t(scene.meshes[hit.surface.mesh].material)].doubleSided;
+}
+
+/// f_r L_d <n.l> V(x, l), summed over lights, with the diffuse f_r of Eq. 6.
+Vec3 diffuseRadiance(Tracer& tracer, const RayHit& hit, const Vec3& toViewer)
+{
+    Surface surface = evaluateSurface(tracer.scene(), hit.surface, toViewer);
+    surface.specularColor = Vec3(0.0f);
+    return directLight(tracer, surface, toViewer);
+}
+
 struct RaySum {
     Vec3 radiance{0.0f};
     int hits = 0;
@@ -37,18 +51,16 @@ struct RaySum {
 SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int side, const SampleKey& key)
 {
     const Mat3 frame = frameFromNormal(sphere.toReceiver);
-    PathRandom unused({}, {});  // a single bounce draws nothing
     RaySum halves[2];
     for (int j = 0; j < side; ++j)
         for (int i = 0; i < side; ++i) {
             const Vec2 at = sphere.radius * onDisk(stratum(i, j, side, key, Use::disk));
             const float reach = std::sqrt(std::max(0.0f, sphere.radius * sphere.radius - glm::dot(at, at)));
             const Vec3 entry = sphere.centre + frame * Vec3(at, reach);
-            bool hit = false;
-            const Vec3 radiance = incomingRadiance(tracer, {entry, -sphere.toReceiver, 0.0f, 2.0f * reach, RayKind::bounce}, Transport::single, unused, hit);
-            if (!hit) continue;
+            const std::optional<RayHit> hit = tracer.closestHit({entry, -sphere.toReceiver, 0.0f, 2.0f * reach, RayKind::bounce});
+            if (!hit || !facesRay(tracer.scene(), *hit)) continue;
             RaySum& half = halves[(i + j) % 2];
-            half.radiance += radiance;
+            half.radiance += diffuseRadiance(tracer, *hit, sphere.toReceiver);
             ++half.hits;
         }
 

@@ -21,7 +21,8 @@ struct SurfaceIntegral {
 
 /// Eq. 2 for a sphere: `side`^2 rays along -v_c, stratified over the disk that the sphere shows to the receiver, each from where it enters the sphere to where
 /// it leaves. Equal areas of the disk are equal w V(x, v) <n.v> dA (w a box over the sphere), so the ratio of the integrals is the mean radiance over the
-/// rays that meet a surface; V(x, v) is visibility within the sphere. Backs of single-sided surfaces count as surface and reflect nothing.
+/// rays that meet a surface; V(x, v) is visibility within the sphere. The back of a single-sided surface hides what is behind it and is no surface itself: its
+/// <n.v> is clamped to 0.
 SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int side, const SampleKey& key);
 
 /// Directions that fill a cone's solid angle evenly: `side`^2 of them, stratified.
