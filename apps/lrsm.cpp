@@ -1,5 +1,6 @@
 #include "apps/commands.h"
 #include "core/base/check.h"
+#include "core/base/float_state.h"
 
 #include <algorithm>
 #include <csignal>
@@ -45,6 +46,7 @@ int runChosen(const std::vector<lrsm::Command>& commands)
 
 int main(int argc, char** argv)
 {
+    const lrsm::FloatState floats;
     // A file size limit then shows as an error of write(), which is reported, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
 

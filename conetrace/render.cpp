@@ -4,6 +4,7 @@
 #include "conetrace/direct.h"
 #include "conetrace/irradiance_filter.h"
 #include "conetrace/pass_log.h"
+#include "core/base/float_state.h"
 #include "voxel/voxelize.h"
 
 namespace lrsm {
@@ -29,6 +30,7 @@ constexpr int kPassesPerFrame = 8, kPassesPerLight = 2;
 Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
                   const RenderOptions& options)
 {
+    const FloatState state;
     Frame frame;
     const FrameObserver nobody;
     const FrameObserver& observer = options.observer ? *options.observer : nobody;
@@ -87,6 +89,7 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
 std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
                          const RenderOptions& options, int x, int y)
 {
+    const FloatState state;
     const OpacityPyramid opacity = buildPyramid(voxelize(scene, settings.voxel), settings.voxel);
     std::vector<Lrsm> lrsms;
     for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, settings.rsm), settings.layers));

@@ -1,5 +1,7 @@
 #include "core/base/parallel.h"
 
+#include "core/base/float_state.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -56,7 +58,10 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
 {
     const std::size_t chunkSize = std::max<std::size_t>(grain, 1);
     const std::size_t chunks = (count + chunkSize - 1) / chunkSize;
-    runChunks(chunks, [&](std::size_t c) { body(c * chunkSize, std::min(count, (c + 1) * chunkSize)); });
+    runChunks(chunks, [&](std::size_t c) {
+        const FloatState state;  // a worker keeps whatever its thread was made with
+        body(c * chunkSize, std::min(count, (c + 1) * chunkSize));
+    });
 }
 
 ThreadLimit::ThreadLimit(int threads)

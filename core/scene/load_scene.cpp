@@ -1,6 +1,7 @@
 #include "core/scene/load_scene.h"
 
 #include "core/base/check.h"
+#include "core/base/float_state.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/defaults.h"
 #include "core/scene/view_file.h"
@@ -71,6 +72,7 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
 
 Scene loadScene(const std::string& scene, const SceneOptions& options)
 {
+    const FloatState state;
     if (!options.view.empty()) return loadWithView(scene, options.view, options);
     if (lowerCaseExtension(scene) == ".json") return loadWithView("", scene, options);
     return loadPlain(scene, options, "scene \"" + scene + "\"");

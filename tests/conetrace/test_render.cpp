@@ -6,7 +6,11 @@
 
 #include "catch.h"
 
+#include <cfenv>
 #include <cmath>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 using namespace lrsm;
 
@@ -75,6 +79,32 @@ TEST_CASE("frame: the same bits with 1, 2 and 8 threads, pass by pass", "[conetr
         CHECK(now == first);
     }
     CHECK(first.size() >= 8);
+}
+
+TEST_CASE("frame: the host's rounding and flush-to-zero change no bit, and are left as they were", "[conetrace][invariance]")
+{
+    auto scene = makeBuiltinScene("cornell-box");
+    for (Light& light : scene->lights) light.intensity *= 1e-36f;  // radiances among the denormals
+    Settings settings = smallSettings();
+    settings.rsm.storage = settings.layers.storage = settings.voxel.storage = Storage::float32;
+    const std::vector<std::string> expected = hashes(renderSmall(*scene, settings));
+
+    std::fenv_t before;
+    std::fegetenv(&before);
+    std::fesetround(FE_UPWARD);
+#ifdef __SSE__
+    _mm_setcsr(_mm_getcsr() | 0x8040u);  // flush to zero, denormals are zero
+    const unsigned control = _mm_getcsr() & ~0x3fu;
+#endif
+    const std::vector<std::string> found = hashes(renderSmall(*scene, settings));
+#ifdef __SSE__
+    const bool kept = (_mm_getcsr() & ~0x3fu) == control;
+#else
+    const bool kept = std::fegetround() == FE_UPWARD;
+#endif
+    std::fesetenv(&before);
+    CHECK(found == expected);
+    CHECK(kept);
 }
 
 TEST_CASE("frame: light scaled by 2^k scales the picture exactly (float32), or to half's precision (gpu)", "[conetrace][invariance]")
