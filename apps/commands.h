@@ -12,6 +12,7 @@ struct Command {
     std::function<int()> run;  ///< returns 0 or 1; bad input and machine trouble are thrown
 };
 
+Command addCapture(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addMerge(CLI::App& program);

@@ -25,12 +25,6 @@ Enum byName(const std::array<std::string_view, n>& names, std::string_view name,
     throw InputError(place, "\"" + std::string(name) + "\" is none of " + known);
 }
 
-template <class T, class Decode>
-void appendDecoded(const Buffer& buffer, std::vector<double>& out, Decode&& decode)
-{
-    for (const T value : buffer.as<T>()) out.push_back(decode(value));
-}
-
 /// A buffer's extents as a texture has them.
 struct TextureShape {
     std::uint32_t layers = 1, depth = 1, height = 1, width = 1;
@@ -104,40 +98,35 @@ std::string_view nameOf(Tolerance::Kind kind) { return kToleranceKinds[static_ca
 
 Tolerance::Kind toleranceKindByName(std::string_view name, const std::string& place) { return byName<Tolerance::Kind>(kToleranceKinds, name, place); }
 
-std::vector<double> decodedValues(const Buffer& buffer)
+std::size_t valueCount(const Buffer& buffer)
 {
-    std::vector<double> values;
-    if (buffer.encoding == Encoding::bits) {
-        values.reserve(buffer.bytes.size() * 8);
-        for (const std::byte byte : buffer.bytes)
-            for (int bit = 0; bit < 8; ++bit) values.push_back((static_cast<unsigned>(byte) >> bit) & 1u);
-        return values;
-    }
-    values.reserve(buffer.bytes.size() / sizeOf(buffer.dtype));
+    return buffer.encoding == Encoding::bits ? buffer.bytes.size() * 8 : buffer.bytes.size() / sizeOf(buffer.dtype);
+}
+
+double decodedValue(const Buffer& buffer, std::size_t i)
+{
+    assert(i < valueCount(buffer));
+    if (buffer.encoding == Encoding::bits) return (static_cast<unsigned>(buffer.bytes[i / 8]) >> (i & 7)) & 1u;
     const bool unorm = buffer.encoding == Encoding::unorm;
     switch (buffer.dtype) {
-        case Dtype::u1: appendDecoded<std::uint8_t>(buffer, values, [&](auto v) { return unorm ? double(v) / 255.0 : double(v); }); break;
-        case Dtype::u2: appendDecoded<std::uint16_t>(buffer, values, [&](auto v) { return unorm ? double(v) / 65535.0 : double(v); }); break;
-        case Dtype::u4: appendDecoded<std::uint32_t>(buffer, values, [](auto v) { return double(v); }); break;
-        case Dtype::u8: appendDecoded<std::uint64_t>(buffer, values, [](auto v) { return static_cast<double>(v); }); break;
-        case Dtype::i4: appendDecoded<std::int32_t>(buffer, values, [](auto v) { return double(v); }); break;
-        case Dtype::f2: appendDecoded<std::uint16_t>(buffer, values, [](auto v) { return double(floatFromHalf(v)); }); break;
-        case Dtype::f4: appendDecoded<float>(buffer, values, [](auto v) { return double(v); }); break;
-        case Dtype::f8: appendDecoded<double>(buffer, values, [](auto v) { return v; }); break;
+        case Dtype::u1: return double(buffer.as<std::uint8_t>()[i]) / (unorm ? 255.0 : 1.0);
+        case Dtype::u2: return double(buffer.as<std::uint16_t>()[i]) / (unorm ? 65535.0 : 1.0);
+        case Dtype::u4: return double(buffer.as<std::uint32_t>()[i]);
+        case Dtype::u8: return static_cast<double>(buffer.as<std::uint64_t>()[i]);
+        case Dtype::i4: return double(buffer.as<std::int32_t>()[i]);
+        case Dtype::f2: return double(floatFromHalf(buffer.as<std::uint16_t>()[i]));
+        case Dtype::f4: return double(buffer.as<float>()[i]);
+        case Dtype::f8: break;
     }
-    return values;
+    return buffer.as<double>()[i];
 }
 
 std::vector<NamedTexture> texturesOf(const std::vector<Buffer>& buffers)
 {
-    // First the extents: mip 0 gives them, the others are counted.
     std::vector<NamedTexture> textures;
-    const auto textureFor = [&](const std::string& file) {
-        return std::find_if(textures.begin(), textures.end(), [&](const NamedTexture& t) { return t.file == file; });
-    };
     for (const Buffer& buffer : buffers) {
         if (!buffer.dds) continue;
-        const auto known = textureFor(buffer.dds->file);
+        const auto known = std::find_if(textures.begin(), textures.end(), [&](const NamedTexture& t) { return t.file == buffer.dds->file; });
         if (known != textures.end()) {
             assert(buffer.dds->mip == known->texture.mips && buffer.dds->format == known->texture.format);
             ++known->texture.mips;
@@ -147,10 +136,15 @@ std::vector<NamedTexture> texturesOf(const std::vector<Buffer>& buffers)
         const TextureShape shape = textureShapeOf(buffer);
         textures.push_back({buffer.dds->file, {buffer.dds->format, shape.width, shape.height, shape.depth, 1, shape.layers, buffer.dds->volume, {}}});
     }
-    for (NamedTexture& t : textures) t.texture.texels.resize(t.texture.byteSize());
+    return textures;
+}
+
+void fillTexture(NamedTexture& named, const std::vector<Buffer>& buffers)
+{
+    DdsTexture& texture = named.texture;
+    texture.texels.assign(texture.byteSize(), std::byte{0});
     for (const Buffer& buffer : buffers) {
-        if (!buffer.dds || buffer.bytes.empty()) continue;
-        DdsTexture& texture = textureFor(buffer.dds->file)->texture;
+        if (!buffer.dds || buffer.dds->file != named.file) continue;
         const TextureShape shape = textureShapeOf(buffer);
         for (std::uint32_t layer = 0; layer < shape.layers; ++layer) {
             if (buffer.encoding == Encoding::bits)
@@ -159,7 +153,6 @@ std::vector<NamedTexture> texturesOf(const std::vector<Buffer>& buffers)
                 copyTexels(buffer, shape, layer, texture.level(layer, buffer.dds->mip));
         }
     }
-    return textures;
 }
 
 std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsTexture& texture, const std::string& place)

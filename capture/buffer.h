@@ -17,7 +17,8 @@ enum class Encoding {
     bits,    ///< voxels, one bit each, lowest bit first
 };
 
-/// How far a candidate may be from the golden buffer, element by element; the unit is the decoded value's.
+/// How far a candidate may be from the golden buffer, element by element; the unit is the decoded value's. For a pass on the same inputs: along
+/// a chain of passes differences add up. Fractions are of the elements that are not 0 in both.
 struct Tolerance {
     enum class Kind {
         exact,     ///< the same bits
@@ -28,7 +29,8 @@ struct Tolerance {
     Kind kind = Kind::exact;
     double value = 0.0;
     double floor = 0.0;     ///< relative: below this the bound stays what it is there
-    double outliers = 0.0;  ///< fraction of elements that may lie outside: decisions (coverage, layers) that flip on their edge
+    double outliers = 0.0;  ///< fraction that may lie outside: decisions (coverage, layers) that flip on their edge
+    double differing = 1.0; ///< fraction that may differ at all: tells rounding that is allowed from rounding that is wrong everywhere
     std::string reason;     ///< one sentence
     bool operator==(const Tolerance&) const = default;
 };
@@ -71,19 +73,22 @@ Encoding encodingByName(std::string_view name, const std::string& place);
 std::string_view nameOf(Tolerance::Kind kind);
 Tolerance::Kind toleranceKindByName(std::string_view name, const std::string& place);
 
-/// Elements as numbers: UNORM divided by 2^n - 1, half widened, bits as 0 and 1 (eight for each byte or 64 for each word, lowest first).
-/// In double, which holds every element but u8's exactly.
-std::vector<double> decodedValues(const Buffer& buffer);
+/// Values in a buffer: its elements, or its bits.
+std::size_t valueCount(const Buffer& buffer);
+/// Value i as a number: UNORM divided by 2^n - 1, half widened, bits 0 or 1 (lowest first). In double, which holds all but u8's exactly.
+double decodedValue(const Buffer& buffer, std::size_t i);
 
-/// The DDS files of these buffers, one texture a file, mips joined; channels that a buffer does not have are 0, bits become 0 and 255.
-/// The buffers must come in the order of their mips, level after level without a gap.
+/// The DDS files that these buffers are in, one texture a file, mips joined; without texels.
+/// The buffers of a file must come in the order of their mips, level after level without a gap.
 struct NamedTexture {
     std::string file;
     DdsTexture texture;
 };
 std::vector<NamedTexture> texturesOf(const std::vector<Buffer>& buffers);
+/// Fills in the texels: channels that a buffer does not have are 0, bits become 0 and 255.
+void fillTexture(NamedTexture& texture, const std::vector<Buffer>& buffers);
 
-/// The bytes that a buffer of this description has in `texture`; the inverse of texturesOf. InputError at `place` where extents, mip, layers or
+/// The bytes that a buffer of this description has in `texture`; the inverse of fillTexture. InputError at `place` where extents, mip, layers or
 /// format do not fit the description.
 std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsTexture& texture, const std::string& place);
 

@@ -13,6 +13,7 @@
 /// One frame, pass by pass, as files: docs/capture.md is the format's description, docs/capture.schema.json the manifest's schema.
 namespace lrsm {
 
+inline constexpr const char* kCaptureFormat = "lrsm capture";
 inline constexpr int kCaptureFormatVersion = 1;
 inline constexpr const char* kManifestFile = "manifest.json";
 
@@ -40,7 +41,7 @@ struct Blessing {
     std::vector<std::string> buffers;  ///< whose bytes changed
 };
 
-/// All of one frame, in memory. What a manifest says beyond this is derived from it (constants.h).
+/// All of one frame, in memory. What a manifest says beyond this is derived from it (manifest.h).
 struct Capture {
     std::string version;               ///< of the program
     std::string sceneName, sceneHash;  ///< hashScene
@@ -63,15 +64,12 @@ struct Capture {
     const Buffer& at(const std::string& name) const;
 };
 
-/// The files of a capture: manifest.json, one .npy a buffer, DDS. Equal captures give equal bytes.
-struct CaptureFiles {
-    bool dds = true;
-};
 class OutputFolder;
-void writeCapture(OutputFolder& folder, const Capture& capture, const CaptureFiles& files = {});
+/// The files of a capture: manifest.json, one .npy a buffer, DDS where a buffer names one. Equal captures give equal bytes.
+void writeCapture(OutputFolder& folder, const Capture& capture);
 
-/// Bytes that writeCapture will write, manifest aside.
-std::size_t predictCaptureBytes(const Capture& description, const CaptureFiles& files = {});
+/// Bytes of the .npy and DDS that writeCapture will write; of the buffers only their description counts.
+std::size_t predictCaptureBytes(const std::vector<Buffer>& buffers);
 
 /// Strict: every buffer that the manifest names must be there, of its shape and type, and have its SHA-256. InputError "FILE: why; what to do".
 Capture readCapture(const std::string& folder);

@@ -38,6 +38,7 @@ const FormatRow& rowOf(DxgiFormat format)
 
 // The file: the magic, DDS_HEADER and DDS_HEADER_DXT10, all 32-bit words. Indices into them:
 constexpr std::size_t kWords = 37;  // 1 + 31 + 5
+static_assert(kWords * sizeof(std::uint32_t) == kDdsHeaderBytes);
 enum Word : std::size_t {
     magic = 0, size = 1, flags = 2, height = 3, width = 4, pitch = 5, depth = 6, mipCount = 7,
     pixelFormatSize = 19, pixelFormatFlags = 20, fourCC = 21,

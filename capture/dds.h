@@ -46,6 +46,7 @@ struct DdsTexture {
     std::span<const std::byte> level(std::uint32_t layer, std::uint32_t mip) const;
 };
 
+inline constexpr std::size_t kDdsHeaderBytes = 148;
 /// `texels` must be byteSize() long.
 std::vector<std::byte> encodeDds(const DdsTexture& texture);
 

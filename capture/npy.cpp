@@ -151,27 +151,27 @@ std::size_t elementCount(const std::vector<std::size_t>& shape, const std::strin
     return count;
 }
 
-std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& shape, std::span<const std::byte> bytes)
+std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape)
 {
-    assert(bytes.size() == elementCount(shape, "npy") * sizeOf(dtype));
     std::string tuple;
-    for (const std::size_t extent : shape) tuple += std::to_string(extent) + ", ";
-    if (shape.size() == 1) tuple.pop_back();  // "(5,)", as NumPy writes
-    if (shape.size() > 1) tuple.resize(tuple.size() - 2);
+    for (const std::size_t extent : shape) tuple += (tuple.empty() ? "" : ", ") + std::to_string(extent);
+    if (shape.size() == 1) tuple += ',';  // Python's tuple of one
     std::string text = "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) +
                        "', 'fortran_order': False, 'shape': (" + tuple + "), }";
     // Blanks and a newline bring the data to a multiple of 64.
     text.append((kAlignment - (kPreamble + text.size() + 1) % kAlignment) % kAlignment, ' ');
     text += '\n';
+    const char preamble[] = {1, 0, static_cast<char>(text.size() & 255), static_cast<char>(text.size() >> 8)};
+    return std::string(kNpyMagic) + std::string(preamble, sizeof preamble) + text;
+}
 
-    std::vector<std::byte> file(kPreamble + text.size() + bytes.size());
-    std::memcpy(file.data(), kNpyMagic.data(), kNpyMagic.size());
-    file[6] = std::byte{1};
-    file[7] = std::byte{0};
-    file[8] = static_cast<std::byte>(text.size() & 255);
-    file[9] = static_cast<std::byte>(text.size() >> 8);
-    std::memcpy(file.data() + kPreamble, text.data(), text.size());
-    if (!bytes.empty()) std::memcpy(file.data() + kPreamble + text.size(), bytes.data(), bytes.size());
+std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& shape, std::span<const std::byte> bytes)
+{
+    assert(bytes.size() == elementCount(shape, "npy") * sizeOf(dtype));
+    const std::string header = npyHeader(dtype, shape);
+    std::vector<std::byte> file(header.size() + bytes.size());
+    std::memcpy(file.data(), header.data(), header.size());
+    if (!bytes.empty()) std::memcpy(file.data() + header.size(), bytes.data(), bytes.size());
     return file;
 }
 

@@ -29,6 +29,9 @@ struct NpyArray {
 /// Product of the extents; 1 for none. InputError at `place` where it (times 8 bytes) overflows.
 std::size_t elementCount(const std::vector<std::size_t>& shape, const std::string& place);
 
+/// What stands before the data.
+std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape);
+
 /// The file's bytes. The data begin at a multiple of 64, as NumPy's own writer has it. `bytes` must be as long as the shape says.
 std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& shape, std::span<const std::byte> bytes);
 

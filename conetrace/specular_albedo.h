@@ -17,8 +17,10 @@ class SpecularAlbedo {
     SpecularAlbedo();
     Vec3 operator()(const Vec3& specularColor, float nDotV, float roughness) const;
 
-  private:
     static constexpr int kCosineSize = 32, kRoughnessSize = 16;
+    const std::vector<Vec2>& table() const { return table_; }
+
+  private:
     std::vector<Vec2> table_;  ///< scale, bias; [roughness * kCosineSize + sqrt <n.v>]
 };
 

@@ -30,13 +30,16 @@ double normalCdfExact(double x);
 
 /// Phi(x) - 1/2, lane by lane: an odd rational function x P(x^2) / Q(x^2), degrees 5 and 4, minimax on |x| <= 5.25 and constant beyond.
 /// |error| <= kPolynomialCdfMaxError. Odd exactly; NaN lanes are unspecified but finite or NaN.
+/// The coefficients, lowest power first, are our own fit: Lawson-weighted rational least squares in 34 digits (error 9.5e-8), then a search over
+/// neighbouring floats for the least error with this very order of operations (2.0e-7, which is rounding).
+inline constexpr float kCdfNumerator[6] = {0.398941666f, 0.0627202615f, 0.00624953536f, 0.000437803013f, 5.68767609e-06f, -1.68606515e-08f};
+inline constexpr float kCdfDenominator[5] = {1.0f, 0.323872954f, 0.0446628183f, 0.00340477377f, 0.000147190076f};
+inline constexpr float kCdfLimit = 5.25f;
 inline Float4 centredCdfPolynomial(Float4 x)
 {
-    // The coefficients are our own fit: Lawson-weighted rational least squares in 34 digits (error 9.5e-8), then a search over neighbouring
-    // floats for the least error with this very order of operations (2.0e-7, which is rounding).
-    constexpr float p0 = 0.398941666f, p1 = 0.0627202615f, p2 = 0.00624953536f, p3 = 0.000437803013f, p4 = 5.68767609e-06f, p5 = -1.68606515e-08f;
-    constexpr float q1 = 0.323872954f, q2 = 0.0446628183f, q3 = 0.00340477377f, q4 = 0.000147190076f;
-    const Float4 limit = splat4(5.25f), half = splat4(0.5f);
+    constexpr float p0 = kCdfNumerator[0], p1 = kCdfNumerator[1], p2 = kCdfNumerator[2], p3 = kCdfNumerator[3], p4 = kCdfNumerator[4], p5 = kCdfNumerator[5];
+    constexpr float q1 = kCdfDenominator[1], q2 = kCdfDenominator[2], q3 = kCdfDenominator[3], q4 = kCdfDenominator[4];
+    const Float4 limit = splat4(kCdfLimit), half = splat4(0.5f);
     x = x > limit ? limit : x;
     x = x < -limit ? -limit : x;
     const Float4 t = x * x;
@@ -66,6 +69,7 @@ class NormalCdf {
     /// Stated bound on |error| of this instance, against exact arithmetic, for any float x; NaN gives NaN.
     float maxError() const;
     GaussianMethod method() const { return method_; }
+    const std::vector<float>& table() const { return table_; }  ///< empty unless `table`
 
   private:
     float lookUp(float x) const
