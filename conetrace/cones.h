@@ -44,13 +44,16 @@ struct ConeSet {
 /// `paper`: the set above, equal in all 16 rotations, turned by azimuth, or moved within each cone's share of its ring.
 /// `slab`: strata of equal cosine weight 1/count (Malley's disc), the same rings; half-angle from the stratum's solid angle.
 /// The traced half-angle is `apertureScale` times the cone's own (capped below 90 degrees).
+/// Weights, directions and angles are those of exact arithmetic within kConeSetMaxError (outer angles and tangents ten times that).
+inline constexpr float kConeSetMaxError = 1.5e-7f;
 ConeSet makeConeSet(const ConeSettings& settings);
 
 /// Which of the 16 rotations a pixel uses: a 4x4 ordered (bit-reversed) pattern, so that near pixels differ most.
 int rotationOfPixel(int x, int y, Rotation rotation);
 
 /// Tangent of the half-angle of the one specular cone: fixed, or 2 atan(alpha) of the GGX lobe: half of its microfacet normals lie within
-/// atan(alpha) of the mean, and reflection doubles the angle. alpha = roughness^2. At most tan 60 degrees.
+/// atan(alpha) of the mean, and reflection doubles the angle. alpha = roughness^2. At most tan 60 degrees. Error <= kSpecularTanMaxError.
+inline constexpr float kSpecularTanMaxError = 6e-7f;
 float specularTanHalf(const ConeSettings& settings, float roughness);
 
 }  // namespace lrsm

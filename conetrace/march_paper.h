@@ -7,7 +7,9 @@
 namespace lrsm {
 
 /// Opacity of a step of `lengthVoxels` through a medium that the voxels say is `density`: taken as it is, or as density per base voxel, so that a
-/// wall of one voxel has optical depth densityK at every level and step.
+/// wall of one voxel has optical depth densityK at every level and step. Absolute error <= kStepOpacityMaxError *
+/// max(1, densityK lengthVoxels / 16): 1 - a is rounded to float.
+inline constexpr float kStepOpacityMaxError = 1e-6f;
 inline float stepOpacity(float density, float lengthVoxels, const ConeSettings& settings)
 {
     const float a = std::min(density, 1.0f);
@@ -15,6 +17,10 @@ inline float stepOpacity(float density, float lengthVoxels, const ConeSettings& 
     if (a >= 1.0f) return 1.0f;
     return 1.0f - fastExp2(settings.densityK * lengthVoxels * fastLog2(1.0f - a));
 }
+
+/// Error of a cone against the printed sum in double: of its opacity, and of its radiance over the largest that the map holds. Float positions in a
+/// steep V are most of it.
+inline constexpr float kMarchPaperMaxError = 5e-5f;
 
 template <class Sampler, class Recorder>
 ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch&,

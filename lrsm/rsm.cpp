@@ -22,7 +22,7 @@ ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const Ligh
     const float nDotL = glm::clamp(glm::dot(surface.normal, toLight), 0.0f, 1.0f);
 
     ShadedTexel shaded;
-    shaded.texel.radiance = surface.albedo * light(surface.position).irradiance * (nDotL / kPi);
+    shaded.texel.radiance = reflectedRadiance(surface.albedo, light(surface.position).irradiance, nDotL);
     shaded.texel.coverage = 1.0f;
     shaded.texel.normal = surface.normal;
     shaded.texel.nDotL = nDotL;

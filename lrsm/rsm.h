@@ -29,6 +29,17 @@ struct Rsm {
     static std::size_t predictBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * (sizeof(RsmTexel) + sizeof(float)); }
 };
 
+/// Eq. 2's integrand at a texel: rho L_d <n.l> / pi, W/(m^2 sr), for the irradiance L_d of a delta light on a plane that faces it.
+/// Relative error <= kReflectedRadianceMaxError.
+inline constexpr float kReflectedRadianceMaxError = 2.5e-7f;
+inline Vec3 reflectedRadiance(const Vec3& albedo, const Vec3& irradiance, float nDotL)
+{
+    return albedo * irradiance * (nDotL / kPi);
+}
+
+/// What a whole map keeps, rasterized and lit in float: radiance over that straight below the light; relative depth, and <n.l>.
+inline constexpr float kRsmRadianceMaxError = 1e-5f, kRsmDepthMaxError = 3e-6f;
+
 /// Renders the scene from one light (Sec. 3.2, [DS05]).
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings);
 

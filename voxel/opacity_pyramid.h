@@ -63,7 +63,8 @@ std::size_t predictPyramidGpuBytes(const VoxelSettings& settings);
 /// These two choose among the pyramid's kinds at every call; a hot loop takes the sampler in sample_opacity.h, which they wrap.
 Vec3 sampleLevel(const OpacityPyramid& pyramid, const Vec3& pVoxels, int level, FilterFraction fraction);
 
-/// Quadrilinear: `level` in [0, levels - 1], clamped; exact at whole levels.
+/// Quadrilinear: `level` in [0, levels - 1], clamped; exact at whole levels. Error, of what the stored texels say, <= kOpacityLookupMaxError.
+inline constexpr float kOpacityLookupMaxError = 3e-7f;
 Vec3 sampleOpacity(const OpacityPyramid& pyramid, const Vec3& pVoxels, float level, FilterFraction fraction);
 
 }  // namespace lrsm

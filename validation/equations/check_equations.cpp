@@ -20,10 +20,15 @@ const std::vector<Group>& groups()
 {
     static const std::vector<Group> all = {
         {"Eq. 12: normal distribution and visible fraction", {"12"}, checkGaussian, 6},
+        {"Eq. 1: the march along a cone", {"1"}, checkCones, 2},
+        {"Eq. 2, 3, 4, 7: direct sums", {"2", "3", "4", "7", "12"}, checkDirectSums, 1},
         {"Eq. 8, 10, 11: terms of Algorithm 1", {"8", "10", "11", "sec5"}, checkTerms, 1},
         {"Eq. 5, 9, 14, 15: sampler, Algorithm 1", {"5", "9", "14", "15"}, checkSample, 2},
         {"Eq. 6, 13-15: layers and their means", {"6", "8", "10", "11", "13", "14", "15", "table1"}, checkLayers, 2},
-        {"Table 1: formats", {"table1"}, checkFormats, 2},
+        {"Sec. 3.1: voxel pyramid and lookup", {"sec3"}, checkVoxels, 1},
+        {"Fig. 7: cones", {"fig7"}, checkConeSets, 1},
+        {"Table 1: formats", {"table1"}, checkFormats, 1},
+        {"Table 1: what storage costs", {"table1"}, addStorageTrades, 1},
         {"elementary functions", {"base"}, checkElementary, 4},
     };
     return all;
