@@ -21,8 +21,10 @@ struct NamedLadder {
 
 std::vector<NamedLadder> laddersOf(const LadderScene& scene)
 {
-    return {{"radiance", "Radiance of a cone sample, from Eq. 2 down", "W/(m^2 sr)", scene.radiance},
-            {"visibility", "Opacity of a cone, from exact rays down", "", scene.visibility}};
+    std::vector<NamedLadder> ladders = {{"radiance", "Radiance of a cone sample, from Eq. 2 down", "W/(m^2 sr)", scene.radiance},
+                                        {"visibility", "Opacity of a cone, from exact rays down", "", scene.visibility}};
+    if (!scene.emission.rungs.empty()) ladders.push_back({"emission", "Emission of a segment of estimator slab, from exact rays down", "W/(m^2 sr)", scene.emission});
+    return ladders;
 }
 
 std::string fileStem(const std::string& name)
@@ -71,6 +73,7 @@ ReportTable samplesForPrograms(const LadderScene& scene)
                            "noise"}, {}};
     for (const RungInfo& rung : radianceRungs()) table.head.push_back("radiance " + rung.name);
     for (const RungInfo& rung : visibilityRungs()) table.head.push_back("opacity " + rung.name);
+    for (const RungInfo& rung : emissionRungs()) table.head.push_back("emission " + rung.name);
     for (const LadderSample& s : scene.samples) {
         std::vector<std::string> row = {std::to_string(s.x), std::to_string(s.y), std::to_string(s.cone), std::to_string(s.step)};
         for (const double value : {double(s.centre.x), double(s.centre.y), double(s.centre.z), double(s.radius), double(s.distance), s.weight, s.level, s.slope})
@@ -78,6 +81,7 @@ ReportTable samplesForPrograms(const LadderScene& scene)
         row.insert(row.end(), {std::to_string(s.layers), s.hasSurface ? "1" : "0", exactNumber(s.noise)});
         for (const double value : s.radiance) row.push_back(exactNumber(value));
         for (const double value : s.opacity) row.push_back(exactNumber(value));
+        for (const double value : s.emission) row.push_back(exactNumber(value));
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -93,7 +97,7 @@ ReportTable worstTable(const LadderScene& scene, const NamedLadder& named)
         const LadderSample& s = scene.samples[worst.sample];
         std::vector<std::string> row = {worst.toTop ? worst.rung + ", whole way" : worst.rung, shortNumber(worst.difference), std::to_string(s.x) + "," + std::to_string(s.y),
                                         std::to_string(s.cone), std::to_string(s.step), shortNumber(double(s.radius)), shortNumber(s.level), shortNumber(s.slope)};
-        const double* values = &named.ladder == &scene.radiance ? s.radiance : s.opacity;
+        const double* values = &named.ladder == &scene.radiance ? s.radiance : &named.ladder == &scene.visibility ? s.opacity : s.emission;
         for (std::size_t i = 0; i < named.ladder.rungs.size(); ++i) row.push_back(shortNumber(values[i]));
         table.rows.push_back(std::move(row));
     }

@@ -78,6 +78,8 @@ bool sameSamples(const LadderScene& a, const LadderScene& b)
             if (s.radiance[r] != t.radiance[r]) return false;
         for (int r = 0; r < kVisibilityRungs; ++r)
             if (s.opacity[r] != t.opacity[r]) return false;
+        for (int r = 0; r < kEmissionRungs; ++r)
+            if (s.emission[r] != t.emission[r]) return false;
         if (s.noise != t.noise || s.level != t.level || s.slope != t.slope || s.weight != t.weight) return false;
     }
     return true;
@@ -86,6 +88,8 @@ bool sameSamples(const LadderScene& a, const LadderScene& b)
 /// Mean over the channels of what --pixel prints as one step's outgoing radiance, all lights and layers; where it was, and how opaque.
 struct PrintedStep {
     double radiance = 0.0, alpha = 0.0, transmittance = 0.0;
+    double clear = 0.0;  ///< slab: sum of w A R, without transmittance
+    int layers = 0;
     Vec3 position{0.0f};
     bool found = false;
 };
@@ -105,6 +109,9 @@ PrintedStep printedStep(const std::string& text, int cone, int step)
             double r = 0.0, g = 0.0, b = 0.0;
             std::istringstream(line.substr(line.find("->") + 2)) >> r >> g >> b;
             printed.radiance += (r + g + b) / 3.0;
+            std::istringstream(line.substr(line.find("  R ") + 4)) >> r >> g >> b;
+            printed.clear += (r + g + b) / 3.0 * std::stod(line.substr(line.find("  V ") + 4));
+            ++printed.layers;
         } else if (line.rfind("  ", 0) == 0 && line.find("I = ") == std::string::npos && currentCone == cone) {
             double distance = 0.0, diameter = 0.0, level = 0.0, density = 0.0;
             PrintedStep row;
@@ -194,6 +201,38 @@ TEST_CASE("the shipped rung is what --pixel prints for that step, to the digits 
         CHECK(1.0 - printed.transmittance * (1.0 - printed.alpha) == Approx(s.opacity[int(VisibilityRung::cone)]).margin(1e-3));
     }
     CHECK(lit == 6);
+}
+
+TEST_CASE("slab: the shipped segment is what --pixel prints for that step; texels and rays agree in the mean", "[ladder][pixel][emission]")
+{
+    Settings settings = smallSettings();
+    settings.layers.overlap = 0.0f;
+    settings.cones = ConeSettings{};
+    const LadderScene ladder = climb("cornell-box", settings, 300, 144);
+    REQUIRE(ladder.emission.rungs.size() == std::size_t(kEmissionRungs));
+    CHECK(climb("cornell-box", smallSettings(), 10).emission.rungs.empty());
+    const Scene scene = *makeBuiltinScene("cornell-box");
+    RenderOptions options;
+    options.width = ladder.width;
+    options.height = ladder.height;
+    int lit = 0, complete = 0;
+    for (const LadderSample& s : ladder.samples) {
+        if (lit >= 6) break;
+        if (s.emission[int(EmissionRung::segment)] < 1e-3) continue;
+        const std::string text = explainPixel(scene, scene.cameras[0], analyseRequirements(scene, {}), settings, options, s.x, s.y);
+        const PrintedStep printed = printedStep(text, s.cone, s.step);
+        CAPTURE(s.x, s.y, s.cone, s.step);
+        REQUIRE(printed.found);
+        CHECK(double(glm::length(printed.position - s.centre)) < 2e-4);
+        if (printed.layers == 0) continue;  // no transmittance left in front of it
+        ++lit;
+        CHECK(printed.clear <= s.emission[int(EmissionRung::segment)] * 1.002 + 1e-5);  // layers without transmittance are not printed
+        complete += printed.clear == Approx(s.emission[int(EmissionRung::segment)]).epsilon(2e-3).margin(1e-5) ? 1 : 0;
+    }
+    CHECK(lit == 6);
+    CHECK(complete >= 4);
+    const std::vector<RungStatistics>& rungs = ladder.emission.rungs;
+    CHECK(rungs[1].mean == Approx(rungs[0].mean).epsilon(0.1));
 }
 
 TEST_CASE("each setting moves its own rung and those below it, none above", "[ladder]")

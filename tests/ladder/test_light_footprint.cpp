@@ -200,6 +200,32 @@ TEST_CASE("a point light's footprint: solid angles, distances, and spheres about
     CHECK(all.eq5.x == Approx(2.0 * all.insideShare).epsilon(1e-2));
 }
 
+TEST_CASE("the texels in a beam: a lit plane through it emits L at any slant, part of it in part of the beam; the rest nothing", "[ladder][emission]")
+{
+    const double tan = GENERATE(0.0, 0.5, 2.0), cosine = 1.0 / std::sqrt(1.0 + tan * tan);
+    const Vec3 n(static_cast<float>(-tan * cosine), static_cast<float>(cosine), 0.0f);
+    const Rsm rsm = surfaceMap(1024, [tan](double x, double) { return tan * x; }, n, Vec3(2.0f, 1.0f, 0.5f));
+    const dvec3 down(0.0, -1.0, 0.0), slanted = glm::normalize(dvec3(0.6, -1.0, 0.3));
+    CHECK(beamEmission(rsm, {dvec3(0.0), down, 0.3, 3.0}).x == Approx(2.0).epsilon(0.01));
+    CHECK(beamEmission(rsm, {dvec3(0.1, 0.1 * tan, 0.0), slanted, 0.2, 3.0}).z == Approx(0.5).epsilon(0.02));
+    CHECK(beamEmission(rsm, {dvec3(0.0), -down, 0.3, 3.0}).x == 0.0);                     // from behind
+    CHECK(beamEmission(rsm, {dvec3(0.0, 3.0, 0.0), down, 0.3, 2.0}).x == 0.0);            // clear air
+    CHECK(beamEmission(rsm, {dvec3(2.0, 2.0 * tan, 0.0), down, 0.3, 3.0}).x == Approx(1.0).epsilon(0.02));  // half of it beside the map
+    if (tan > 0.0)  // the segment ends at the beam's middle: half of the plane is before it
+        CHECK(beamEmission(rsm, {dvec3(0.0, 0.75, 0.0), down, 0.3, 1.5}).x == Approx(1.0).epsilon(0.02));
+
+    Rsm spot = sunMap(512);
+    spot.projection.type = LightType::spot;
+    spot.projection.halfWidth = 1.0f;
+    for (int j = 0; j < 512; ++j)
+        for (int i = 0; i < 512; ++i) {
+            const double x = (2.0 * i + 1.0) / 512.0 - 1.0, z = (2.0 * j + 1.0) / 512.0 - 1.0, length = std::sqrt(1.0 + x * x + z * z);
+            spot.texels.at(i, j) = {Vec3(1.0f), 1.0f, Vec3(0, 1, 0), static_cast<float>(1.0 / length)};
+            spot.depthLinear.at(i, j) = static_cast<float>(2.0 * length / 4.0);
+        }
+    CHECK(beamEmission(spot, {dvec3(0.7, 0.0, -0.5), slanted, 0.25, 2.0}).x == Approx(1.0).epsilon(0.02));
+}
+
 TEST_CASE("LayerModel agrees with the passes' partition: same slices, same decay", "[ladder][eq13][eq15]")
 {
     Rsm rsm = surfaceMap(64, [](double x, double z) { return 0.7 * x + 0.2 * z; }, Vec3(0, 1, 0));

@@ -73,6 +73,22 @@ TEST_CASE("Eq. 2: no surface in the sphere is told apart from a dark one; backs 
     CHECK(integrate(scene, {Vec3(0.0f, 0.5f, 0.0f), 0.9f, Vec3(0, 1, 0)}).coverage == Approx(1.0 - 0.25 / 0.81).margin(0.01));
 }
 
+TEST_CASE("a beam sees the first surface within its length: all of it, the part that is there, or nothing", "[ladder][emission]")
+{
+    const Scene scene = makeScene({floorTo(0, 10, 0)}, {diffuse(Vec3(0.5f))}, {sun({0, -1, 0}, 2.0f)});
+    const EmbreeScene embree(scene);
+    const std::vector<LightSampler> lights(1, LightSampler(scene.lights[0]));
+    Tracer tracer(embree, lights);
+    const double lit = 1.0 / 3.14159265358979;
+    const auto emission = [&](const Beam& beam) { return double(integrateBeam(tracer, beam, 32, {1, 2, 3}).y); };
+    CHECK(emission({Vec3(5, 1, 0), Vec3(0, -1, 0), 0.5f, 1.5f}) == Approx(lit).epsilon(1e-5));
+    CHECK(emission({Vec3(5, 1, 0), Vec3(0, -1, 0), 0.5f, 0.9f}) == 0.0);
+    CHECK(emission({Vec3(0, 1, 0), Vec3(0, -1, 0), 0.5f, 1.5f}) == Approx(0.5 * lit).epsilon(0.02));  // the floor begins at x = 0
+    const float root = 0.70710678f;
+    CHECK(emission({Vec3(5, 1, 0), Vec3(root, -root, 0), 0.3f, 1.0f / root}) == Approx(0.5 * lit).epsilon(0.02));  // ends on the floor in its middle
+    CHECK(emission({Vec3(5, -1, 0), Vec3(0, 1, 0), 0.5f, 1.5f}) == 0.0);  // its underside is dark
+}
+
 TEST_CASE("opacity by rays: a cone that faces a wall is blocked by the solid angle that has reached it", "[ladder][eq1]")
 {
     const Scene scene = makeScene({rectangle({-20, -20, 2}, {0, 40, 0}, {40, 0, 0}), rectangle({-20, -20, -2}, {0, 40, 0}, {40, 0, 0})},

@@ -6,6 +6,7 @@
 #include "validation/ladder/filtered_radiance.h"
 #include "validation/ladder/ladder_statistics.h"
 #include "validation/ladder/light_footprint.h"
+#include "validation/ladder/segment_emission.h"
 #include "voxel/voxelize.h"
 
 #include <chrono>
@@ -54,6 +55,7 @@ class LadderWorld {
             samplers_.emplace_back(light);
             lights_.push_back(makeLight(scene, light, needs, settings, stored_));
         }
+        for (const LadderLight& light : lights_) rsms_.push_back(&light.rsm);
     }
 
     SampledFrame draw(const Camera& camera) const
@@ -72,6 +74,12 @@ class LadderWorld {
         sample.opacity[int(VisibilityRung::voxelRays)] = opacity.voxelRays;
         sample.opacity[int(VisibilityRung::boxMips)] = opacity.boxMips;
         sample.opacity[int(VisibilityRung::cone)] = opacity.cone;
+        if (settings_.cones.estimator == Estimator::slab) {
+            const SegmentEmission emission = segmentEmission(world(), rsms_, tracer, recorded, side_, key);
+            sample.emission[int(EmissionRung::beam)] = emission.rays;
+            sample.emission[int(EmissionRung::texels)] = emission.texels;
+            sample.emission[int(EmissionRung::segment)] = emission.segment;
+        }
         return sample;
     }
 
@@ -93,6 +101,7 @@ class LadderWorld {
         sample.distance = recorded.steps[recorded.step].middle * opacity_.base.frame.voxelSize;
         sample.voxelLevel = double(recorded.steps[recorded.step].level);
         sample.weight = double(recorded.coneWeight) * (recorded.before - recorded.after);
+        sample.emissionWeight = double(recorded.coneWeight) * recorded.before;
         return sample;
     }
 
@@ -142,6 +151,7 @@ class LadderWorld {
     std::vector<LightSampler> samplers_;
     std::vector<LadderLight> lights_;
     std::vector<Lrsm> stored_;
+    std::vector<const Rsm*> rsms_;  ///< of lights_
 };
 
 std::vector<std::string> notesOn(const Settings& settings)
@@ -149,8 +159,8 @@ std::vector<std::string> notesOn(const Settings& settings)
     const ConeSettings& cones = settings.cones;
     std::vector<std::string> notes;
     if (cones.estimator == Estimator::slab)
-        notes.push_back("estimator=slab gathers a segment's emission, not a sphere's L: the ladder evaluates Algorithm 1 at the spheres of the steps where slab "
-                        "looks light up; samples weigh by the opacity that the step adds");
+        notes.push_back("estimator=slab gathers a segment's emission, not a sphere's L: the first ladder evaluates Algorithm 1 at the spheres of the steps where "
+                        "slab looks light up, weighed by the opacity that the step adds; the third is what the segments emit");
     if (cones.backface != Backface::cosine) notes.push_back("N of Eq. 8 is taken as `backface` says from rung Eq. 5-8 on, not as the printed cosine");
     if (cones.layerSelection == LayerSelection::touched)
         notes.push_back("layer_selection=touched: rung Eq. 15 adds every layer that the sphere touches, without decay");
@@ -159,7 +169,7 @@ std::vector<std::string> notesOn(const Settings& settings)
     return notes;
 }
 
-void describeAll(LadderScene& scene, int worstPerRung)
+void describeAll(LadderScene& scene, bool slab, int worstPerRung)
 {
     std::vector<std::size_t> all, withSurface;
     double light = 0.0, fromNothing = 0.0, noise = 0.0;
@@ -180,7 +190,10 @@ void describeAll(LadderScene& scene, int worstPerRung)
     scene.noise = withSurface.empty() ? 0.0 : std::sqrt(noise / double(withSurface.size()));
     scene.radiance = describeLadder(radianceView(), scene.samples, withSurface, worstPerRung);
     scene.visibility = describeLadder(visibilityView(), scene.samples, all, worstPerRung);
-    scene.verdict = scene.scene + ": " + scene.radiance.verdict + " " + scene.visibility.verdict;
+    scene.verdict = scene.radiance.verdict + " " + scene.visibility.verdict;
+    if (!slab) return;
+    scene.emission = describeLadder(emissionView(), scene.samples, all, worstPerRung);
+    scene.verdict += " " + scene.emission.verdict;
 }
 
 }  // namespace
@@ -204,6 +217,13 @@ std::vector<RungInfo> visibilityRungs()
             {"voxel rays", "the same rays through the bits of level 0, from the march's start on"},
             {"box mips", "the cone's steps, opacity from exact boxes as wide as the tap, in double"},
             {"cone", "as shipped: quadrilinear lookups in the stored mip chain"}};
+}
+
+std::vector<RungInfo> emissionRungs()
+{
+    return {{"beam", "rays through the cone's width: the radiance of the first surface within the segment"},
+            {"beam texels", "the RSM's texels inside the same cylinder, by their area, none hidden by another"},
+            {"segment", "as shipped: w A R from the pre-filtered layers, a tap wide"}};
 }
 
 const std::vector<double>& ladderProbabilities()
@@ -243,7 +263,7 @@ LadderScene climbLadder(const Scene& scene, const Camera& camera, const Requirem
             for (std::size_t i = first + begin; i < first + end; ++i) result.samples[i] = world.climb(drawn.samples[i], tracer);
         });
     }
-    describeAll(result, options.worstPerRung);
+    describeAll(result, settings.cones.estimator == Estimator::slab, options.worstPerRung);
     tell("rungs", 1.0);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return result;

@@ -23,12 +23,17 @@ inline constexpr int kRadianceRungs = 9;
 enum class VisibilityRung { rays, voxelRays, boxMips, cone };
 inline constexpr int kVisibilityRungs = 4;
 
+/// What the slab estimator adds for a segment of a cone in clear air (its w A R, in place of Eq. 1's alpha L).
+enum class EmissionRung { beam, texels, segment };
+inline constexpr int kEmissionRungs = 3;
+
 /// Name of a rung ("Eq. 3, 4") and what it switches on, one line.
 struct RungInfo {
     std::string name, meaning;
 };
 std::vector<RungInfo> radianceRungs();    ///< kRadianceRungs of them
 std::vector<RungInfo> visibilityRungs();  ///< kVisibilityRungs
+std::vector<RungInfo> emissionRungs();    ///< kEmissionRungs
 
 struct LadderOptions {
     int width = 256, height = 144;  ///< of the frame that is sampled: `--size` of a render that shall show the same pixels
@@ -47,7 +52,8 @@ struct LadderSample {
     Vec3 toReceiver{0.0f};    ///< v_c
     float radius = 0.0f;      ///< r_c, metres
     float distance = 0.0f;    ///< from the cone's apex, metres
-    double weight = 0.0;      ///< share of L in its pixel's irradiance (or specular radiance): cone weight * transmittance * alpha
+    double weight = 0.0;      ///< share of L in the weighted mean of its pixel's cones: cone weight * transmittance * alpha
+    double emissionWeight = 0.0;  ///< the same without alpha, for what a segment emits
     // Of the light that gives the sample most (the first where none gives any).
     double level = 0.0;       ///< LRSM level of the footprint, before clamping
     double slope = 1.0;       ///< mean <n.l> of the RSM texels inside the sphere; of all in its footprint where none is inside
@@ -57,6 +63,7 @@ struct LadderSample {
     double noise = 0.0;       ///< estimated standard deviation of the rung Eq. 2
     double radiance[kRadianceRungs] = {};
     double opacity[kVisibilityRungs] = {};
+    double emission[kEmissionRungs] = {};  ///< estimator=slab; else 0
 };
 
 /// Statistics of a difference over the samples (each counts once): signed mean, and the rest of its absolute value.
@@ -64,7 +71,7 @@ struct DifferenceStatistics {
     double mean = 0.0;  ///< signed
     double rms = 0.0;
     double p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;  ///< percentiles of |difference|
-    double weightedMean = 0.0;  ///< signed, each sample counted by LadderSample::weight: what the picture's energy sees
+    double weightedMean = 0.0;  ///< signed, each sample counted by LadderSample::weight (emissionWeight): what the picture's energy sees
     std::vector<double> quantiles;  ///< signed difference at ladderProbabilities()
     std::vector<std::size_t> histogram;  ///< counts of the signed difference in the bins of `LadderScene`'s edges for this ladder
 };
@@ -113,6 +120,7 @@ struct LadderScene {
     int width = 0, height = 0;  ///< as sampled
     Ladder radiance;    ///< over the samples that have a surface
     Ladder visibility;  ///< over all samples
+    Ladder emission;    ///< over all samples with estimator=slab; else without rungs
     std::vector<LadderSample> samples;  ///< in order of pixel, cone, step
     std::uint64_t lookups = 0;      ///< LRSM lookups of the frame: each was taken with probability samples.size() / lookups
     std::size_t withoutSurface = 0; ///< samples in whose sphere no ray of Eq. 2 meets a surface: L is undefined and they are in no radiance statistic
@@ -121,7 +129,7 @@ struct LadderScene {
     double seconds = 0.0;
     std::vector<std::string> notes; ///< what the settings make different from the paper's ladder, one sentence each
 
-    std::string verdict;            ///< both ladders' verdicts
+    std::string verdict;            ///< all ladders' verdicts
 };
 
 /// Samples the gather of the frame that `renderFrame` makes of the same arguments and climbs both ladders at each sample.

@@ -166,7 +166,8 @@ LadderView radianceView()
             {{"r_c", "m", [](const LadderSample& s) { return double(s.radius); }},
              {"level", "", [](const LadderSample& s) { return s.level; }},
              {"slope", "<n.l>", [](const LadderSample& s) { return s.slope; }},
-             {"layers", "", [](const LadderSample& s) { return double(s.layers); }, true}}};
+             {"layers", "", [](const LadderSample& s) { return double(s.layers); }, true}},
+            [](const LadderSample& s) { return s.weight; }};
 }
 
 LadderView visibilityView()
@@ -176,7 +177,20 @@ LadderView visibilityView()
             [](const LadderSample& s, std::size_t rung) { return s.opacity[rung]; },
             {{"distance", "m", [](const LadderSample& s) { return double(s.distance); }},
              {"r_c", "m", [](const LadderSample& s) { return double(s.radius); }},
-             {"voxel level", "", [](const LadderSample& s) { return s.voxelLevel; }}}};
+             {"voxel level", "", [](const LadderSample& s) { return s.voxelLevel; }}},
+            [](const LadderSample& s) { return s.weight; }};
+}
+
+LadderView emissionView()
+{
+    return {"what a segment emits",
+            emissionRungs(),
+            [](const LadderSample& s, std::size_t rung) { return s.emission[rung]; },
+            {{"distance", "m", [](const LadderSample& s) { return double(s.distance); }},
+             {"r_c", "m", [](const LadderSample& s) { return double(s.radius); }},
+             {"slope", "<n.l>", [](const LadderSample& s) { return s.slope; }},
+             {"layers", "", [](const LadderSample& s) { return double(s.layers); }, true}},
+            [](const LadderSample& s) { return s.emissionWeight; }};
 }
 
 Ladder describeLadder(const LadderView& view, const std::vector<LadderSample>& samples, const std::vector<std::size_t>& included, int worstPerRung)
@@ -184,7 +198,7 @@ Ladder describeLadder(const LadderView& view, const std::vector<LadderSample>& s
     Ladder ladder;
     ladder.samples = included.size();
     std::vector<double> weights;
-    for (const std::size_t i : included) weights.push_back(samples[i].weight);
+    for (const std::size_t i : included) weights.push_back(view.weight(samples[i]));
 
     double squares = 0.0;
     std::vector<std::vector<double>> toAbove, toTop;

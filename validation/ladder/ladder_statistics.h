@@ -17,9 +17,11 @@ struct LadderView {
         bool integer = false;  ///< one bin a value
     };
     std::vector<Variable> variables;
+    std::function<double(const LadderSample&)> weight;  ///< of the weighted means
 };
 LadderView radianceView();
 LadderView visibilityView();
+LadderView emissionView();
 
 /// Differences, each with its weight (>= 0; all 0 counts as all 1).
 DifferenceStatistics describeDifferences(std::vector<double> differences, std::span<const double> weights);

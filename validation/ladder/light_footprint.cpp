@@ -42,6 +42,8 @@ class LightRays {
     double metres(double depth) const { return near_ + depth * range_; }
     double depthOf(double metres) const { return (metres - near_) / range_; }
     double range() const { return range_; }
+    bool directional() const { return directional_; }
+    double halfWidth() const { return half_; }
     /// Depth of a point, metres from the light as the map measures it.
     double metresOf(const dvec3& p) const
     {
@@ -286,6 +288,33 @@ FootprintRadiance footprintRadiance(const Rsm& rsm, const LayerModel& layers, co
     FootprintPass pass(rsm, layers, terms, sphere, embree);
     pass.run();
     return pass.result();
+}
+
+dvec3 beamEmission(const Rsm& rsm, const CoveredBeam& beam)
+{
+    const LightRays rays(rsm.projection);
+    const CoveredSphere around{beam.middle, std::sqrt(beam.radius * beam.radius + 0.25 * beam.length * beam.length), -beam.direction};
+    const Lattice lattice(rays, around, rsm.projection.resolution);
+    const double resolution = rsm.projection.resolution, cell = 2.0 * rays.halfWidth() / lattice.perMap;
+    dvec3 sum(0.0);
+    for (std::int64_t j = lattice.jBegin; j < lattice.jEnd; ++j)
+        for (std::int64_t i = lattice.iBegin; i < lattice.iEnd; ++i) {
+            const double u = (double(i) + 0.5) / lattice.perMap, v = (double(j) + 0.5) / lattice.perMap;
+            if (!(u >= 0.0 && u < 1.0 && v >= 0.0 && v < 1.0)) continue;
+            const std::size_t index = rsm.texels.index(static_cast<int>(u * resolution), static_cast<int>(v * resolution));
+            const RsmTexel& texel = rsm.texels.texels[index];
+            if (!(texel.coverage > 0.0f)) continue;
+            const LightRays::Ray ray = rays.at(u, v);
+            const double metres = rays.metres(double(rsm.depthLinear.texels[index]));
+            const dvec3 fromMiddle = ray.origin + ray.direction * metres - beam.middle;
+            const double along = glm::dot(fromMiddle, beam.direction);
+            const dvec3 beside = fromMiddle - along * beam.direction;
+            if (std::abs(along) > 0.5 * beam.length || glm::dot(beside, beside) > beam.radius * beam.radius) continue;
+            const double across = ray.solidAngle * cell * cell * (rays.directional() ? 1.0 : metres * metres);  // across the light's ray
+            const double facing = std::max(0.0, -glm::dot(dvec3(texel.normal), beam.direction));
+            sum += dvec3(texel.radiance) * (across * facing / std::max(double(texel.nDotL), kLeastCosine));
+        }
+    return sum / (3.14159265358979323846 * beam.radius * beam.radius);
 }
 
 }  // namespace lrsm

@@ -44,6 +44,16 @@ struct CoveredSphere {
     glm::dvec3 toReceiver{0.0, 1.0, 0.0};
 };
 
+/// A stretch of a cone taken as a cylinder.
+struct CoveredBeam {
+    glm::dvec3 middle{0.0}, direction{0.0, 0.0, 1.0};  ///< direction unit, away from the receiver
+    double radius = 0.0, length = 0.0;
+};
+
+/// Emission of the texels inside a beam: sum of R <n.v> dA over the beam's cross-section, dA = r^2 domega / <n.l> (Eq. 4's Jacobian, r^2 kept). What faces
+/// away counts 0, nothing hides anything. Lattice as for footprintRadiance.
+glm::dvec3 beamEmission(const Rsm& rsm, const CoveredBeam& beam);
+
 /// N of Eq. 8 as the `backface` setting weighs it.
 double facingTerm(const TermSettings& terms, double cosine);
 

@@ -7,7 +7,7 @@
 namespace lrsm {
 namespace {
 
-enum class Use : std::uint32_t { disk = 1, bundle = 2 };
+enum class Use : std::uint32_t { disk = 1, bundle = 2, beam = 3 };
 
 /// Jittered point of stratum (i, j) of side^2.
 UnitPoint stratum(int i, int j, int side, const SampleKey& key, Use use)
@@ -71,6 +71,19 @@ SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int s
     integral.coverage = double(hits) / (double(side) * side);
     integral.noise = 0.5 * std::abs(halves[0].mean() - halves[1].mean());
     return integral;
+}
+
+Vec3 integrateBeam(Tracer& tracer, const Beam& beam, int side, const SampleKey& key)
+{
+    const Mat3 frame = frameFromNormal(beam.direction);
+    Vec3 sum(0.0f);
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            const Vec2 at = beam.radius * onDisk(stratum(i, j, side, key, Use::beam));
+            const std::optional<RayHit> hit = tracer.closestHit({beam.begin + frame * Vec3(at, 0.0f), beam.direction, 0.0f, beam.length, RayKind::bounce});
+            if (hit && facesRay(tracer.scene(), *hit)) sum += diffuseRadiance(tracer, *hit, -beam.direction);
+        }
+    return sum / static_cast<float>(side * side);
 }
 
 std::vector<Vec3> coneBundle(const Vec3& axis, float tanHalf, int side, const SampleKey& key)

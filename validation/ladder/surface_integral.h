@@ -25,6 +25,15 @@ struct SurfaceIntegral {
 /// <n.v> is clamped to 0.
 SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int side, const SampleKey& key);
 
+/// A stretch of a cone taken as a cylinder: `begin` is the middle of the end nearest to the receiver.
+struct Beam {
+    Vec3 begin{0.0f}, direction{0.0f, 0.0f, 1.0f};  ///< direction unit, away from the receiver
+    float radius = 0.0f, length = 0.0f;
+};
+
+/// Mean over `side`^2 stratified rays along the beam of the radiance of the first surface met, 0 where there is none.
+Vec3 integrateBeam(Tracer& tracer, const Beam& beam, int side, const SampleKey& key);
+
 /// Directions that fill a cone's solid angle evenly: `side`^2 of them, stratified.
 std::vector<Vec3> coneBundle(const Vec3& axis, float tanHalf, int side, const SampleKey& key);
 
