@@ -37,7 +37,7 @@ std::string fileStem(const std::string& name)
 ReportTable rungTable(const NamedLadder& named, bool whole)
 {
     ReportTable table{named.title, {"rung", "mean", "step mean", "step rms", "p50", "p95", "p99", "max", "to top mean", "to top rms", "share"}, {}};
-    if (whole) table.head.insert(table.head.end(), {"to top p50", "to top p95", "to top p99", "to top max", "weighted mean", "what it switches on"});
+    if (whole) table.head.insert(table.head.end(), {"to top p50", "to top p95", "to top p99", "to top max", "weighted mean"});
     for (const RungStatistics& rung : named.ladder.rungs) {
         const DifferenceStatistics &step = rung.toAbove, &way = rung.toTop;
         std::vector<std::string> row = {rung.name};
@@ -45,10 +45,16 @@ ReportTable rungTable(const NamedLadder& named, bool whole)
         row.push_back(shortNumber(100.0 * rung.share) + " %");
         if (whole) {
             for (const double value : {way.p50, way.p95, way.p99, way.max, rung.weightedMean}) row.push_back(shortNumber(value));
-            row.push_back(rung.meaning);
         }
         table.rows.push_back(std::move(row));
     }
+    return table;
+}
+
+ReportTable meaningTable(const NamedLadder& named)
+{
+    ReportTable table{"", {"rung", "what it switches on"}, {}};
+    for (const RungStatistics& rung : named.ladder.rungs) table.rows.push_back({rung.name, rung.meaning});
     return table;
 }
 
@@ -155,7 +161,7 @@ std::string sceneHtml(const LadderScene& scene)
                           " % of the light. Sampling noise of the top rung: " + shortNumber(scene.noise) + " rms.");
     for (const std::string& note : scene.notes) html += paragraphHtml(note);
     for (const NamedLadder& named : laddersOf(scene)) {
-        html += tableHtml(rungTable(named, true)) + chartHtml(stepsChart(named)) + chartHtml(distributionChart(named));
+        html += tableHtml(rungTable(named, true)) + foldedHtml("What each rung switches on", tableHtml(meaningTable(named))) + chartHtml(stepsChart(named)) + chartHtml(distributionChart(named));
         for (const LadderCurve& curve : named.ladder.curves) html += chartHtml(curveChart(named, curve));
         html += foldedHtml("Worst cases: " + std::string(named.key), tableHtml(worstTable(scene, named)));
     }
@@ -205,7 +211,7 @@ ValidationPart describeLadders(const std::vector<LadderScene>& scenes, Json& jso
     json = Json::array();
     for (const LadderScene& scene : scenes) {
         json.push_back(sceneLadderJson(scene));
-        part.verdict += (part.verdict.empty() ? "" : " ") + scene.scene + ": " + scene.verdict;
+        part.verdict += (part.verdict.empty() ? "" : " ") + scene.verdict;
         part.text += "\nerror ladder of " + scene.scene + ", " + std::to_string(scene.samples.size()) + " cone samples\n";
         for (const NamedLadder& named : laddersOf(scene)) part.text += textTable(rungTable(named, false));
         part.html += sceneHtml(scene);

@@ -7,8 +7,8 @@ constexpr std::string_view kStyle = R"(
 :root { color-scheme: light dark; }
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 1300px; margin: 1.5em auto; padding: 0 1em; }
 table { border-collapse: collapse; margin: .6em 0 1.2em; } caption { text-align: left; font-weight: 600; padding: .3em 0; }
-td, th { padding: .15em .7em; border-bottom: 1px solid #8885; text-align: right; vertical-align: top; font-variant-numeric: tabular-nums; }
-td:first-child, th:first-child { text-align: left; }
+td, th { padding: .15em .7em; border-bottom: 1px solid #8885; text-align: left; vertical-align: top; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 tr.failed td { background: #e5484d33; }
 details { margin: .4em 0; } summary { cursor: pointer; font-weight: 600; }
 figure { margin: 0; } .wide { overflow-x: auto; }
@@ -55,13 +55,18 @@ std::string pictureHtml(const ReportPicture& picture)
 
 std::string tableHtml(const ReportTable& table)
 {
+    const std::vector<bool> numbers = numberColumns(table);
+    const auto cell = [&](std::string_view tag, std::size_t column, std::string_view text) {
+        const bool number = column < numbers.size() && numbers[column];
+        return "<" + std::string(tag) + (number ? " class=\"number\">" : ">") + htmlEscaped(text) + "</" + std::string(tag) + ">";
+    };
     std::string html = "<div class=\"wide\"><table><caption>" + htmlEscaped(table.title) + "</caption><tr>";
-    for (const std::string& cell : table.head) html += element("th", cell);
+    for (std::size_t i = 0; i < table.head.size(); ++i) html += cell("th", i, table.head[i]);
     html += "</tr>\n";
     for (const auto& row : table.rows) {
         const bool failed = !row.empty() && row.front().starts_with('!');
         html += failed ? "<tr class=\"failed\">" : "<tr>";
-        for (std::size_t i = 0; i < row.size(); ++i) html += element("td", std::string_view(row[i]).substr(failed && i == 0 ? 1 : 0));
+        for (std::size_t i = 0; i < row.size(); ++i) html += cell("td", i, std::string_view(row[i]).substr(failed && i == 0 ? 1 : 0));
         html += "</tr>\n";
     }
     return html + "</table></div>\n";

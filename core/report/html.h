@@ -20,7 +20,7 @@ std::string htmlEscaped(std::string_view text);
 /// An <img> that carries its picture.
 std::string pictureHtml(const ReportPicture& picture);
 
-/// First column left-aligned, the others right; the mark of a failed row becomes its colour.
+/// Columns of numbers stand to the right; the mark of a failed row becomes its colour.
 std::string tableHtml(const ReportTable& table);
 
 std::string headingHtml(std::string_view text);

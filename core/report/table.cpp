@@ -19,15 +19,6 @@ bool isNumber(const std::string& cell)
     return cell.empty() || std::string_view("0123456789+-.").find(cell.front()) != std::string_view::npos || cell == "nan" || cell == "inf";
 }
 
-/// Which columns hold numbers alone: those stand to the right.
-std::vector<bool> numberColumns(const ReportTable& table)
-{
-    std::vector<bool> numbers(table.head.size(), true);
-    for (const auto& row : table.rows)
-        for (std::size_t i = 0; i < row.size() && i < numbers.size(); ++i) numbers[i] = numbers[i] && isNumber(row[i]);
-    return numbers;
-}
-
 std::string csvCell(const std::string& cell)
 {
     if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
@@ -37,6 +28,14 @@ std::string csvCell(const std::string& cell)
 }
 
 }  // namespace
+
+std::vector<bool> numberColumns(const ReportTable& table)
+{
+    std::vector<bool> numbers(table.head.size(), true);
+    for (const auto& row : table.rows)
+        for (std::size_t i = 0; i < row.size() && i < numbers.size(); ++i) numbers[i] = numbers[i] && isNumber(row[i]);
+    return numbers;
+}
 
 std::string textTable(const ReportTable& table)
 {
