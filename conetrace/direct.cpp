@@ -2,6 +2,7 @@
 
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
+#include "core/base/settings_table.h"
 #include "core/scene/brdf.h"
 #include "core/scene/light.h"
 
@@ -125,6 +126,7 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
 {
     assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
+    validate(settings);
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
     const Shadowing shadowing{rsms, opacity, settings, static_cast<float>(tangent(halfAperture))};
 

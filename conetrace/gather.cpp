@@ -2,6 +2,7 @@
 
 #include "conetrace/gather_setup.h"
 #include "core/base/parallel.h"
+#include "core/base/settings_table.h"
 #include "voxel/sample_opacity.h"
 
 namespace lrsm {
@@ -101,6 +102,7 @@ void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 
 GatherPlan planGather(const OpacityPyramid& opacity, const Requirements& needs, const ConeSettings& settings)
 {
+    validate(settings);
     GatherPlan plan;
     plan.cones = makeConeSet(settings);
     plan.phi = NormalCdf(settings.gaussian, settings.gaussianTableSize);

@@ -77,6 +77,12 @@ PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const 
     return {sum.irradiance * (kPi * perSet), sum.opacity * perSet};
 }
 
+/// Into [0, 1]; NaN becomes 0.
+inline float roughnessClass(float roughness)
+{
+    return roughness > 0.0f ? std::min(roughness, 1.0f) : 0.0f;
+}
+
 /// The specular cone about the mirror direction; below the surface it sees nothing.
 template <Estimator estimator, class Sampler, class Recorder>
 Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye,
@@ -85,7 +91,7 @@ Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const Gather
     const Vec3 mirror = 2.0f * glm::dot(receiver.normal, toEye) * receiver.normal - toEye;
     if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
     const auto last = static_cast<float>(plan.specularSchedules.size() - 1);
-    const MarchSchedule& schedule = plan.specularSchedules[static_cast<std::size_t>(std::clamp(roughness, 0.0f, 1.0f) * last + 0.5f)];
+    const MarchSchedule& schedule = plan.specularSchedules[static_cast<std::size_t>(roughnessClass(roughness) * last + 0.5f)];
     const ConeRay ray = coneRay(receiver, glm::normalize(mirror));
     if constexpr (requires { recorder.cone(ray, 1.0f, schedule.tanHalf); }) recorder.cone(ray, 1.0f, schedule.tanHalf);
     const ConeResult cone = marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);

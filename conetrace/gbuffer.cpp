@@ -1,8 +1,12 @@
 #include "conetrace/gbuffer.h"
 
+#include "core/base/check.h"
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
 #include "core/raster/draw_scene.h"
+#include "core/scene/check_scene.h"
+
+#include <sstream>
 
 namespace lrsm {
 
@@ -25,6 +29,17 @@ double farthestDepth(const Camera& camera, const Aabb& bounds)
                                                 camera.forward.y > 0.0f ? bounds.max.y : bounds.min.y,
                                                 camera.forward.z > 0.0f ? bounds.max.z : bounds.min.z);
     return glm::dot(axis, farCorner - DVec3(camera.position));
+}
+
+/// Depths z/w = 1 - near / z are told apart as long as near / z is above float's rounding.
+void checkDepthRatio(const Camera& camera, const Aabb& bounds)
+{
+    const double far = farthestDepth(camera, bounds);
+    if (!camera.perspective || !(far > kMaxDepthRatio * double(camera.nearPlane))) return;
+    std::ostringstream text;
+    text << "the near plane at " << camera.nearPlane << " m is too near for a scene that reaches " << far
+         << " m: float32 depths could not tell its surfaces apart; put it at " << far / kMaxDepthRatio << " m at least";
+    throw InputError("camera \"" + camera.name + "\"", text.str());
 }
 
 void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& camera, const SurfaceHit& hit)
@@ -86,6 +101,10 @@ Vec3 directionToEye(const Camera& camera, const Vec3& pWorld)
 
 GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requirements& needs, const GBufferSettings& settings)
 {
+    checkBounds(scene.bounds);
+    checkCamera(camera);
+    checkDepthRatio(camera, scene.bounds);
+    checkMaterials(scene);
     const int width = settings.width, height = settings.height;
     const SceneFragments drawn = drawScene(scene, clipFromWorld(camera, width, height, scene.bounds), needs, width, height);
 

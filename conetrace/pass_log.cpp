@@ -1,6 +1,9 @@
 #include "conetrace/pass_log.h"
 
 #include "core/base/hash.h"
+#include "core/base/parallel.h"
+
+#include <bit>
 
 namespace lrsm {
 namespace {
@@ -11,6 +14,30 @@ template <class T>
 Sha256& addImage(Sha256& hash, const Image<T>& image)
 {
     return hash.add(image.texels);
+}
+
+/// Of `count` floats in a row: those whose exponent is all ones.
+std::uint64_t countNonFiniteFloats(const float* values, std::size_t count)
+{
+    constexpr std::size_t kGrain = std::size_t(1) << 18;
+    constexpr std::uint32_t kExponent = 0x7f800000u;
+    std::vector<std::uint64_t> partial((count + kGrain - 1) / kGrain, 0);
+    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t found = 0;
+        for (std::size_t i = begin; i < end; ++i) found += (std::bit_cast<std::uint32_t>(values[i]) & kExponent) == kExponent ? 1u : 0u;
+        partial[begin / kGrain] = found;
+    });
+    std::uint64_t total = 0;
+    for (const std::uint64_t found : partial) total += found;
+    return total;
+}
+
+/// Of structs that hold floats alone.
+template <class T>
+std::uint64_t countIn(const std::vector<T>& values)
+{
+    static_assert(sizeof(T) % sizeof(float) == 0 && alignof(T) % alignof(float) == 0);
+    return countNonFiniteFloats(reinterpret_cast<const float*>(values.data()), values.size() * (sizeof(T) / sizeof(float)));
 }
 
 }  // namespace
@@ -101,6 +128,43 @@ std::string hashOf(const Gathered& gathered)
 std::string hashOf(const Image<Vec3>& image)
 {
     return Sha256().add(image.texels).hex();
+}
+
+std::uint64_t countNonFinite(const BitGrid&)
+{
+    return 0;  // bits
+}
+
+std::uint64_t countNonFinite(const OpacityPyramid& pyramid)
+{
+    return countIn(pyramid.float32);
+}
+
+std::uint64_t countNonFinite(const Rsm& rsm)
+{
+    return countIn(rsm.texels.texels) + countIn(rsm.depthLinear.texels);
+}
+
+std::uint64_t countNonFinite(const Lrsm& lrsm)
+{
+    return countIn(lrsm.texels);
+}
+
+std::uint64_t countNonFinite(const GBuffer& gbuffer)
+{
+    return countIn(gbuffer.position.texels) + countIn(gbuffer.geometricNormal.texels) + countIn(gbuffer.normal.texels) +
+           countIn(gbuffer.albedo.texels) + countIn(gbuffer.specularColor.texels) + countIn(gbuffer.roughness.texels) +
+           countIn(gbuffer.depthLinear.texels);
+}
+
+std::uint64_t countNonFinite(const Gathered& gathered)
+{
+    return countIn(gathered.irradiance.texels) + countIn(gathered.specular.texels) + countIn(gathered.opacity.texels);
+}
+
+std::uint64_t countNonFinite(const Image<Vec3>& image)
+{
+    return countIn(image.texels);
 }
 
 }  // namespace lrsm

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-/// Runs a pass, and notes its time, the bytes of what it made, and its hash.
+/// Runs a pass, and notes its time, the bytes of what it made, its hash, and whether a NaN or infinity is in it.
 namespace lrsm {
 
 struct PassSize {
@@ -29,6 +29,16 @@ std::string hashOf(const GBuffer& gbuffer);
 std::string hashOf(const Gathered& gathered);
 std::string hashOf(const Image<Vec3>& image);
 
+/// NaNs and infinities among the values that a pass hands on. None may leave a pass, whatever comes in; one read of the output, which is
+/// little beside making it.
+std::uint64_t countNonFinite(const BitGrid& grid);
+std::uint64_t countNonFinite(const OpacityPyramid& pyramid);
+std::uint64_t countNonFinite(const Rsm& rsm);
+std::uint64_t countNonFinite(const Lrsm& lrsm);
+std::uint64_t countNonFinite(const GBuffer& gbuffer);
+std::uint64_t countNonFinite(const Gathered& gathered);
+std::uint64_t countNonFinite(const Image<Vec3>& image);
+
 class PassLog {
   public:
     PassLog(const RenderOptions& options, int passes) : options_(options), passes_(passes) {}
@@ -41,7 +51,8 @@ class PassLog {
         auto output = std::forward<Pass>(pass)();
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
         const PassSize size = sizeOf(output);
-        reports.push_back({name, elapsed.count(), size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string()});
+        reports.push_back({name, elapsed.count(), size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string(),
+                           countNonFinite(output)});
         return output;
     }
 

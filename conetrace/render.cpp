@@ -5,6 +5,8 @@
 #include "conetrace/irradiance_filter.h"
 #include "conetrace/pass_log.h"
 #include "core/base/float_state.h"
+#include "core/base/settings_table.h"
+#include "core/scene/check_scene.h"
 #include "voxel/voxelize.h"
 
 namespace lrsm {
@@ -31,6 +33,8 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
                   const RenderOptions& options)
 {
     const FloatState state;
+    checkScene(scene);
+    validate(settings);
     Frame frame;
     const FrameObserver nobody;
     const FrameObserver& observer = options.observer ? *options.observer : nobody;
@@ -90,6 +94,8 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Require
                          const RenderOptions& options, int x, int y)
 {
     const FloatState state;
+    checkScene(scene);
+    validate(settings);
     const OpacityPyramid opacity = buildPyramid(voxelize(scene, settings.voxel), settings.voxel);
     std::vector<Lrsm> lrsms;
     for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, settings.rsm), settings.layers));

@@ -18,6 +18,7 @@ struct PassReport {
     std::size_t bytes = 0;     ///< held by the pass's output
     std::size_t gpuBytes = 0;  ///< the same in the GPU's formats
     std::string sha256;        ///< of the output; empty unless asked for
+    std::uint64_t nonFinite = 0;  ///< NaNs and infinities in the output; the pass is broken where this is not 0
 };
 
 /// The picture, its parts, and what made it.

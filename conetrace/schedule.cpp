@@ -1,8 +1,10 @@
 #include "conetrace/schedule.h"
 
+#include "core/base/check.h"
 #include "core/base/elementary.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace lrsm {
 namespace {
@@ -16,6 +18,16 @@ MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
     step.level = static_cast<float>(level);
     step.tapWidth = static_cast<float>(exp2Exact(level));
     return step;
+}
+
+/// A step that float32 cannot add to the distance would end the cone in silence.
+[[noreturn]] void refuseStep(const ConeSettings& settings, float t)
+{
+    std::ostringstream text;
+    text << "the step is lost in float32 at " << t << " voxels from the receiver; raise step or min_diameter_voxels";
+    std::ostringstream place;
+    place << "settings step=" << settings.step << ", min_diameter_voxels=" << settings.minDiameterVoxels;
+    throw InputError(place.str(), text.str());
 }
 
 }  // namespace
@@ -39,7 +51,7 @@ MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float re
         MarchStep step = stepAt(settings, tanHalf, slab ? t + 0.5f * length : t);
         step.begin = t;
         step.end = t + length;
-        if (!(step.end > t)) break;  // t has outgrown its own precision
+        if (!(step.end > t)) refuseStep(settings, t);
         schedule.steps.push_back(step);
         t = step.end;
     }

@@ -61,8 +61,9 @@ SpecularAlbedo::SpecularAlbedo() : table_(kRoughnessSize * kCosineSize)
 
 Vec3 SpecularAlbedo::operator()(const Vec3& specularColor, float nDotV, float roughness) const
 {
-    const float x = std::sqrt(std::clamp(nDotV, 0.0f, 1.0f)) * (kCosineSize - 1);
-    const float y = std::clamp(roughness, 0.0f, 1.0f) * (kRoughnessSize - 1);
+    const auto unit = [](float v) { return v > 0.0f ? std::min(v, 1.0f) : 0.0f; };  // NaN becomes 0
+    const float x = std::sqrt(unit(nDotV)) * (kCosineSize - 1);
+    const float y = unit(roughness) * (kRoughnessSize - 1);
     const int x0 = std::min(static_cast<int>(x), kCosineSize - 2), y0 = std::min(static_cast<int>(y), kRoughnessSize - 2);
     const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
     const Vec2* row = table_.data() + y0 * kCosineSize + x0;

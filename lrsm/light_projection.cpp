@@ -15,10 +15,12 @@ std::array<Vec3, 8> cornersOf(const Aabb& box)
     return corners;
 }
 
-/// far > near, so that depths can be divided by the range, whatever the scene (a point, a plane facing the light).
+/// far > near by more than the rounding of coordinates, so that depths can be divided by the range, whatever the scene (a point, a plane
+/// facing the light). Relative to the map's width or the light's distance: the scene's unit must not matter.
 void widenEmptyRange(LightProjection& projection)
 {
-    const float least = std::max(1e-6f, 1e-5f * std::abs(projection.depthNear));
+    const float size = projection.type == LightType::directional ? 0.2f * projection.halfWidth : projection.depthNear;
+    const float least = size > 0.0f ? 1e-5f * size : 1e-6f;
     projection.depthFar = std::max(projection.depthFar, projection.depthNear + least);
 }
 
@@ -32,7 +34,9 @@ void fitDirectional(LightProjection& projection, const Aabb& bounds)
     }
 
     // One texel more than the bounds need pays for moving the centre to a whole texel of the light's world-fixed lattice.
-    const double extent = std::max({double(high.x) - low.x, double(high.y) - low.y, 1e-6});
+    // A map thinner than a millionth of the scene (a line along the light) would be all rounding.
+    const double longest = std::max({double(bounds.max.x) - bounds.min.x, double(bounds.max.y) - bounds.min.y, double(bounds.max.z) - bounds.min.z});
+    const double extent = std::max({double(high.x) - low.x, double(high.y) - low.y, longest > 0.0 ? 1e-6 * longest : 1e-6});
     const double texel = extent / (projection.resolution - 1);
     const auto snapped = [texel](float a, float b) { return std::floor(0.5 * (double(a) + b) / texel + 0.5) * texel; };
     projection.halfWidth = static_cast<float>(0.5 * texel * projection.resolution);

@@ -1,5 +1,6 @@
 // Sec. 4.2, 4.3 and 5 of Sugihara, Rauwendaal, Salvi: Layered Reflective Shadow Maps for Voxel-based Indirect Illumination, HPG 2014.
 #include "core/base/parallel.h"
+#include "core/base/settings_table.h"
 #include "lrsm/layers.h"
 #include "lrsm/sample.h"
 
@@ -241,6 +242,7 @@ std::size_t predictLayerBytes(int rsmResolution)
 
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
 {
+    validate(settings);
     const std::vector<LayerRange> all = partition(rsm, settings);
     const Classifier layersOf(all, std::max(settings.normalLayers, 1));
     const std::vector<std::uint64_t> counts = countTexels(rsm, layersOf, all.size());

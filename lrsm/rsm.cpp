@@ -2,7 +2,9 @@
 #include "lrsm/rsm.h"
 
 #include "core/base/parallel.h"
+#include "core/base/settings_table.h"
 #include "core/raster/draw_scene.h"
+#include "core/scene/check_scene.h"
 #include "core/scene/light.h"
 
 namespace lrsm {
@@ -41,6 +43,10 @@ void toHalf(RsmTexel& texel, HalfRounding rounding, ConversionCounts& counts)
 
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings)
 {
+    validate(settings);
+    checkBounds(scene.bounds);
+    checkLight(light);
+    checkMaterials(scene);
     Rsm rsm;
     rsm.projection = fitLightProjection(light, scene.bounds, settings.resolution);
     const int n = rsm.projection.resolution;

@@ -2,6 +2,8 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/settings_table.h"
+#include "core/scene/check_scene.h"
 #include "voxel/voxelize_triangle.h"
 
 #include <new>
@@ -67,6 +69,8 @@ void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Cor
 
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 {
+    validate(settings);
+    checkBounds(scene.bounds);
     BitGrid grid = emptyGrid(fitVoxelFrame(scene.bounds, settings.resolution));
     for (const Mesh& mesh : scene.meshes) {
         voxelizeInto(grid, mesh.triangles.size(), settings.mode, [&](std::size_t i) {

@@ -79,7 +79,11 @@ float floatFromUnorm16(std::uint16_t bits)
 float roundToHalf(float value, HalfRounding rounding, ConversionCounts& counts)
 {
     if (std::isnan(value)) ++counts.nans;
-    if (std::isfinite(value) && std::abs(value) > 65504.0f) ++counts.halfSaturations;
+    constexpr float kLargest = 65504.0f;
+    if (std::isfinite(value) && std::abs(value) > kLargest) {
+        ++counts.halfSaturations;
+        return std::copysign(kLargest, value);
+    }
     return floatFromHalf(halfFromFloat(value, rounding));
 }
 

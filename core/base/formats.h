@@ -35,7 +35,8 @@ struct ConversionCounts {
     }
 };
 
-/// value -> half -> float, counting.
+/// value -> half -> float, counting. A finite value beyond half's range becomes +-65504 in both modes, as Vulkan and OpenGL allow and D3D11
+/// demands: an infinite texel would turn to NaN under a filter's weight of 0. halfFromFloat itself is IEEE's.
 float roundToHalf(float value, HalfRounding rounding, ConversionCounts& counts);
 float roundToUnorm16(float value, ConversionCounts& counts);
 

@@ -49,7 +49,8 @@ Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& t
     if (const TextureUse& use = material.baseColorTexture)
         color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
     if (!triangle.mesh.colors.empty()) color *= triangle.interpolate(triangle.mesh.colors);
-    return glm::clamp(color, Vec4(0.0f), Vec4(1.0f));
+    for (int c = 0; c < 4; ++c) color[c] = color[c] > 0.0f ? std::min(color[c], 1.0f) : 0.0f;  // NaN too
+    return color;
 }
 
 /// Unit v, or `fallback` where v has no direction. In double: an edge of 1e-12 m must not underflow.
@@ -168,8 +169,10 @@ Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& t
 {
     const float nl = glm::dot(surface.normal, toLight), nv = glm::dot(surface.normal, toViewer);
     if (!(nl > 0.0f && nv > 0.0f) || surface.specularColor == Vec3(0.0f)) return Vec3(0.0f);
-    const Vec3 half = toLight + toViewer;  // not zero: both are on the normal's side
-    const Vec3 h = half / std::sqrt(glm::dot(half, half));
+    const Vec3 half = toLight + toViewer;  // not zero, both being on the normal's side; but its square may round to 0
+    const float half2 = glm::dot(half, half);
+    if (!(half2 > 0.0f)) return Vec3(0.0f);
+    const Vec3 h = half / std::sqrt(half2);
     const float nh = glm::dot(surface.normal, h), vh = std::max(0.0f, glm::dot(toViewer, h));
 
     // GGX distribution; sin^2 by the cross product, since 1 - nh^2 loses all digits near a mirror's highlight.
@@ -181,7 +184,7 @@ Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& t
     // Smith masking and shadowing over 4 nl nv, height-correlated.
     const float maskL = nv * std::sqrt(nl * nl * (1.0f - alpha2) + alpha2);
     const float maskV = nl * std::sqrt(nv * nv * (1.0f - alpha2) + alpha2);
-    const float visibility = 0.5f / (maskL + maskV);
+    const float visibility = 0.5f / std::max(maskL + maskV, 1e-30f);  // products of two grazing cosines may round to 0
 
     // Schlick's Fresnel.
     const float grazing = 1.0f - std::min(vh, 1.0f), grazing2 = grazing * grazing;

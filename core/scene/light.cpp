@@ -7,6 +7,8 @@
 namespace lrsm {
 namespace {
 
+constexpr float kInverseSquareLimit = 1e30f;
+
 /// Which of the six faces +x, -x, +y, -y, +z, -z a direction leaves a cube through; ties go to the earlier axis.
 int cubeFaceOf(const Vec3& d)
 {
@@ -47,7 +49,7 @@ LightSampler::LightSampler(const Light& light) : light_(light)
 
 LightSample LightSampler::operator()(const Vec3& pWorld) const
 {
-    if (light_.type == LightType::directional) return {-light_.direction, kInfinity, light_.intensity};
+    if (light_.type == LightType::directional) return {-light_.direction, kInfinity, glm::min(light_.intensity, Vec3(kMaxIrradiance))};
 
     const Vec3 fromLight = pWorld - light_.position;
     const float distance = glm::length(fromLight);
@@ -59,7 +61,9 @@ LightSample LightSampler::operator()(const Vec3& pWorld) const
         attenuation *= coneFalloff(cosInner_, cosOuter_, glm::dot(direction, light_.direction));
     else if (cubeFaceOf(direction) != face_)
         attenuation = 0.0f;
-    return {-direction, distance, light_.intensity * attenuation};
+    // 1 / distance^2 may overflow; infinity times a black channel would be NaN.
+    attenuation = std::min(attenuation, kInverseSquareLimit);
+    return {-direction, distance, glm::min(light_.intensity * attenuation, Vec3(kMaxIrradiance))};
 }
 
 std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name)

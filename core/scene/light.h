@@ -11,6 +11,10 @@ struct LightSample {
     Vec3 irradiance{0.0f};           ///< on a plane facing the light, W/m^2 per channel (L_d of Eq. 2, as a delta light gives it)
 };
 
+/// The most that sampleLight lets arrive, per channel: sums and products of what a pass makes of it stay far from float's end. A light whose
+/// distance rounds to nothing would otherwise be infinite, and a black channel of it NaN.
+inline constexpr float kMaxIrradiance = 1e20f;
+
 /// Spot: I / r^2 * falloff(cos); falloff = clamp((cos - cosOuter) / max(0.001, cosInner - cosOuter), 0, 1)^2, and the range
 /// window of KHR_lights_punctual. Cube face: I / r^2 inside its 90-degree square frustum (a direction on the border of two
 /// faces belongs to exactly one). Directional: the intensity.
