@@ -75,7 +75,9 @@ Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& scen
     // The same half height as pixelRay's; the picture's own proportions decide its width.
     const Vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
     const double half = camera.perspective ? tangent(0.5 * double(camera.verticalFov)) : 0.5 * double(camera.verticalExtent);
-    const double near = camera.nearPlane, far = std::max(farthestDepth(camera, sceneBounds) * 1.001, near + 1e-3 * std::abs(near) + 1e-6);
+    // An orthographic near plane may be at 0; a perspective one scales with its scene.
+    const double least = camera.perspective ? 0.0 : 1e-6;
+    const double near = camera.nearPlane, far = std::max(farthestDepth(camera, sceneBounds) * 1.001, near + 1e-3 * std::abs(near) + least);
 
     Mat4 m(0.0f);
     setRow(m, 0, right, camera.position, double(height) / (half * width), 0.0);

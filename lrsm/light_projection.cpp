@@ -19,7 +19,8 @@ std::array<Vec3, 8> cornersOf(const Aabb& box)
 /// facing the light). Relative to the map's width or the light's distance: the scene's unit must not matter.
 void widenEmptyRange(LightProjection& projection)
 {
-    const float size = projection.type == LightType::directional ? 0.2f * projection.halfWidth : projection.depthNear;
+    const float reach = projection.depthNear > 0.0f ? projection.depthNear : projection.depthFar;
+    const float size = projection.type == LightType::directional ? 0.2f * projection.halfWidth : reach;
     const float least = size > 0.0f ? 1e-5f * size : 1e-6f;
     projection.depthFar = std::max(projection.depthFar, projection.depthNear + least);
 }

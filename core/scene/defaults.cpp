@@ -36,6 +36,16 @@ void addDefaultLight(Scene& scene)
     scene.notes.emplace_back(kDefaultLightNote);
 }
 
+float nearPlaneFor(const Camera& camera, const Aabb& bounds)
+{
+    constexpr float kOrdinary = 0.01f;
+    if (bounds.empty()) return kOrdinary;
+    const Vec3 far = glm::max(glm::abs(bounds.min - camera.position), glm::abs(bounds.max - camera.position));
+    const float reach = std::sqrt(glm::dot(far, far));
+    if (!(reach > 0.0f) || !std::isfinite(reach)) return kOrdinary;
+    return std::clamp(kOrdinary, 1e-5f * reach, 1e-2f * reach);
+}
+
 void addDefaultCamera(Scene& scene)
 {
     const Vec3 extent = scene.bounds.extent(), centre = scene.bounds.centre();

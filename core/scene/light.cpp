@@ -17,11 +17,28 @@ int cubeFaceOf(const Vec3& d)
     return 2 * axis + (d[axis] < 0.0f ? 1 : 0);
 }
 
+constexpr float kSteepRamp = 0.001f;
+
 /// KHR_lights_punctual's cone: squared linear ramp in the cosine from the outer to the inner angle.
 float coneFalloff(float cosInner, float cosOuter, float cosFromAxis)
 {
-    const float ramp = glm::clamp((cosFromAxis - cosOuter) / std::max(0.001f, cosInner - cosOuter), 0.0f, 1.0f);
+    const float ramp = glm::clamp((cosFromAxis - cosOuter) / (cosInner - cosOuter), 0.0f, 1.0f);
     return ramp * ramp;
+}
+
+/// The same by 1 - cos of the angle between two unit vectors, |a - b|^2 / 2, which keeps its digits for small angles.
+float steepFalloff(float versineInner, float versineOuter, const Vec3& direction, const Vec3& axis)
+{
+    const Vec3 off = direction - axis;
+    const float versine = 0.5f * glm::dot(off, off), width = std::max(kSteepRamp * versineOuter, versineOuter - versineInner);
+    const float ramp = glm::clamp((versineOuter - versine) / width, 0.0f, 1.0f);
+    return ramp * ramp;
+}
+
+float versineOf(double angle)
+{
+    const double half = sinCos(0.5 * angle).sin;
+    return static_cast<float>(2.0 * half * half);
 }
 
 float rangeWindow(float distance, float range)
@@ -43,6 +60,9 @@ LightSampler::LightSampler(const Light& light) : light_(light)
     if (light.type == LightType::spot) {
         cosInner_ = static_cast<float>(sinCos(light.innerConeAngle).cos);
         cosOuter_ = static_cast<float>(sinCos(light.outerConeAngle).cos);
+        versineInner_ = versineOf(light.innerConeAngle);
+        versineOuter_ = versineOf(light.outerConeAngle);
+        steep_ = cosInner_ - cosOuter_ < kSteepRamp;
     }
     face_ = cubeFaceOf(light.direction);
 }
@@ -58,7 +78,8 @@ LightSample LightSampler::operator()(const Vec3& pWorld) const
 
     float attenuation = rangeWindow(distance, light_.range) / (distance * distance);
     if (light_.type == LightType::spot)
-        attenuation *= coneFalloff(cosInner_, cosOuter_, glm::dot(direction, light_.direction));
+        attenuation *= steep_ ? steepFalloff(versineInner_, versineOuter_, direction, light_.direction)
+                              : coneFalloff(cosInner_, cosOuter_, glm::dot(direction, light_.direction));
     else if (cubeFaceOf(direction) != face_)
         attenuation = 0.0f;
     // 1 / distance^2 may overflow; infinity times a black channel would be NaN.

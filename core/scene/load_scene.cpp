@@ -58,7 +58,10 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     if (lowerCaseExtension(target) == ".json") throw InputError(viewPath + ": scene", "must not be a view file itself");
 
     Scene result = loadPlain(target, options, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
-    if (view.camera) result.cameras = {*view.camera};
+    if (view.camera) {
+        view.camera->nearPlane = nearPlaneFor(*view.camera, result.bounds);
+        result.cameras = {*view.camera};
+    }
     if (view.lights) result.lights = std::move(*view.lights);
     // What was said about defaults no longer holds where the view replaced them.
     std::erase_if(result.notes, [&](const std::string& note) {
