@@ -25,7 +25,8 @@ struct MarchSchedule {
 /// `paper`: sphere centres from startVoxels on, each a step (step * diameter) apart; diameter = max(minDiameter, 2 t tanHalf);
 /// level = max(0, log2(diameter) + voxelLevelBias).
 /// `slab`: contiguous segments sampled in their middle; the first is [0, startVoxels] and reads no voxels.
-/// Ends at `reachVoxels` (the grid's diagonal) or maxSteps; InputError where a step is too short for float32 to be taken. Levels (and widths, relatively) are within kVoxelLevelMaxError of what the diameters say;
+/// Ends at `reachVoxels` (the grid's diagonal) or maxSteps; InputError where a step is too short for float32 to be taken.
+/// Levels (and widths, relatively) are within kVoxelLevelMaxError of what the diameters say;
 /// places and diameters within kSchedulePlaceMaxError, times the number of steps, of the recurrence in exact arithmetic, relatively.
 inline constexpr float kVoxelLevelMaxError = 6e-7f, kSchedulePlaceMaxError = 1.2e-7f;
 MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float reachVoxels);
