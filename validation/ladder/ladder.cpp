@@ -134,6 +134,7 @@ class LadderWorld {
                 brightest = brightness;
                 sample.slope = footprint.slope;
                 sample.layers = footprint.layers;
+                sample.lightCosine = double(glm::dot(directionToLight(light.rsm.projection, sphere.centre), sphere.toReceiver));
                 const LightSpacePoint at = projectToLight(light.rsm.projection, sphere.centre);
                 sample.level = at.valid ? std::log2(double(sphere.radius) / double(at.texelSize)) + double(settings_.cones.rsmLevelBias) : 0.0;
             }

@@ -57,6 +57,7 @@ struct LadderSample {
     // Of the light that gives the sample most (the first where none gives any).
     double level = 0.0;       ///< LRSM level of the footprint, before clamping
     double slope = 1.0;       ///< mean <n.l> of the RSM texels inside the sphere; of all in its footprint where none is inside
+    double lightCosine = 0.0; ///< l . v_c at x_c: below 0 the receiver looks from behind at what faces the light
     int layers = 0;           ///< layers that rung Eq. 15 samples and finds light in
     double voxelLevel = 0.0;  ///< mip level of the step's voxel lookup
     bool hasSurface = false;  ///< some ray of Eq. 2 met a surface inside the sphere: L is defined
@@ -94,7 +95,7 @@ struct CurveBin {
 };
 /// Error against one property of the sample. Bins hold about equal counts, or one value each for small integers; none is empty.
 struct LadderCurve {
-    std::string variable, unit;  ///< radiance: "r_c", "level", "slope", "layers"; visibility: "distance", "r_c", "voxel level"
+    std::string variable, unit;  ///< radiance: "r_c", "level", "slope", "l.v", "layers"; visibility: "distance", "r_c", "voxel level"
     std::vector<CurveBin> bins;
 };
 

@@ -166,6 +166,7 @@ LadderView radianceView()
             {{"r_c", "m", [](const LadderSample& s) { return double(s.radius); }},
              {"level", "", [](const LadderSample& s) { return s.level; }},
              {"slope", "<n.l>", [](const LadderSample& s) { return s.slope; }},
+             {"l.v", "", [](const LadderSample& s) { return s.lightCosine; }},
              {"layers", "", [](const LadderSample& s) { return double(s.layers); }, true}},
             [](const LadderSample& s) { return s.weight; }};
 }
