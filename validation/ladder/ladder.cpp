@@ -191,7 +191,7 @@ void describeAll(LadderScene& scene, bool slab, int worstPerRung)
     scene.noise = withSurface.empty() ? 0.0 : std::sqrt(noise / double(withSurface.size()));
     scene.radiance = describeLadder(radianceView(), scene.samples, withSurface, worstPerRung);
     scene.visibility = describeLadder(visibilityView(), scene.samples, all, worstPerRung);
-    scene.verdict = scene.radiance.verdict + " " + scene.visibility.verdict;
+    scene.verdict = scene.scene + ": " + scene.radiance.verdict + " " + scene.visibility.verdict;
     if (!slab) return;
     scene.emission = describeLadder(emissionView(), scene.samples, all, worstPerRung);
     scene.verdict += " " + scene.emission.verdict;

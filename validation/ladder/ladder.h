@@ -130,7 +130,7 @@ struct LadderScene {
     double seconds = 0.0;
     std::vector<std::string> notes; ///< what the settings make different from the paper's ladder, one sentence each
 
-    std::string verdict;            ///< all ladders' verdicts
+    std::string verdict;            ///< the scene's name and all ladders' verdicts
 };
 
 /// Samples the gather of the frame that `renderFrame` makes of the same arguments and climbs both ladders at each sample.
