@@ -154,8 +154,8 @@ void describeRsm(Catalogue& out, const RsmSettings& settings, std::size_t light)
     };
     map("radiance", {"r", "g", "b", "coverage"}, {"reflected radiance albedo L <n.l> / pi; coverage 1 where a surface was drawn", "light's map", "W/(m^2 sr)"},
         tolerances::mapRadiance(), format);
-    map("normal", {"x", "y", "z", "n_dot_l"}, {"shading normal towards the light, and its cosine to it", kWorld, ""}, tolerances::mapNormal(), format);
-    map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(),
+    map("normal", {"x", "y", "z", "n_dot_l"}, {"shading normal towards the light, and its cosine to it", kWorld, ""}, tolerances::mapNormal(n), format);
+    map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(n),
         {Dtype::f4, Encoding::number, DxgiFormat::R32_FLOAT});
 }
 
@@ -185,15 +185,15 @@ void describeGBuffer(Catalogue& out, int width, int height, bool specular, doubl
     const auto picture = [&](const std::string& name, const Names& components, const Text& text, const Tolerance& tolerance, Dtype dtype = Dtype::f4) {
         out.picture("gbuffer." + name, "gbuffer", width, height, components, text, tolerance, dtype);
     };
-    picture("position", xyz, {"of the surface; 0 where nothing was drawn, as all below", kWorld, "m"}, tolerances::length(diagonal));
+    picture("position", xyz, {"of the surface; 0 where nothing was drawn, as all below", kWorld, "m"}, tolerances::length(diagonal, height));
     picture("geometric_normal", xyz, {"of the triangle, unit, towards the eye", kWorld, ""}, tolerances::surface());
-    picture("normal", xyz, {"shading normal, unit, towards the eye", kWorld, ""}, tolerances::surface());
+    picture("normal", xyz, {"shading normal, unit, towards the eye", kWorld, ""}, tolerances::surfaceNormal(height));
     picture("albedo", rgb, {"diffuse", "linear", ""}, tolerances::surface());
     if (specular) {
         picture("specular_color", rgb, {"F0; 0 where the material has no specular part", "linear", ""}, tolerances::surface());
         picture("roughness", {}, {"perceptual: GGX alpha is its square", "", ""}, tolerances::surface());
     }
-    picture("depth", {}, {"along the viewing axis", "eye", "m"}, tolerances::length(diagonal));
+    picture("depth", {}, {"along the viewing axis", "eye", "m"}, tolerances::length(diagonal, height));
     picture("object_id", {}, {"mesh + 1; 0 where nothing was drawn", "", ""}, tolerances::objectId(), Dtype::u4);
 }
 

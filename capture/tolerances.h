@@ -9,12 +9,13 @@ Tolerance given();          ///< scene and tables: a candidate need not have the
 Tolerance voxels();         ///< of the bits
 Tolerance voxelMip(bool unorm);
 Tolerance mapRadiance();    ///< of an RSM
-Tolerance mapNormal();
-Tolerance mapDepth();
+Tolerance mapNormal(int resolution);
+Tolerance mapDepth(int resolution);
 Tolerance layerHalf(bool half);
 Tolerance layerDepth(bool unorm);
-Tolerance length(double sceneDiagonal);  ///< positions and depths of the G-buffer
-Tolerance surface();        ///< normals, albedo, roughness of the G-buffer
+Tolerance length(double sceneDiagonal, int height);  ///< positions and depths of the G-buffer
+Tolerance surfaceNormal(int height);
+Tolerance surface();        ///< albedo, roughness of the G-buffer
 Tolerance objectId();
 Tolerance direct();
 Tolerance cones();

@@ -20,8 +20,10 @@ set(allowed_validation/ladder ${passes} reference validation validation/ladder)
 set(allowed_validation/extremes ${passes} validation/extremes)
 set(allowed_capture ${passes} core/imageio capture)
 set(allowed_apps ${passes} core/imageio core/report reference validation validation/equations validation/ladder validation/extremes capture apps)
+# The second implementation reads and writes arrays, and has nothing of the passes.
+set(allowed_tests/twin core/base core/scene capture tests/twin catch.h scratch.h)
 set(folders core/base core/scene core/raster core/imageio core/report voxel lrsm conetrace reference validation validation/equations
-            validation/ladder validation/extremes capture apps)
+            validation/ladder validation/extremes capture apps tests/twin)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
@@ -31,6 +33,7 @@ set(owned_embree4 "^reference/")
 set(owned_CLI "^apps/")
 set(owned_tbb "^core/base/parallel|^reference/")
 set(owned_boost "^validation/equations/oracle")
+set(owned_epoxy "^tests/twin/(gl|egl)[.]")
 set(owned_oneapi "^core/base/parallel|^reference/")
 
 set(violations "")

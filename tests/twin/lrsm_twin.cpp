@@ -1,0 +1,91 @@
+// lrsm_twin GOLDEN [-o CANDIDATE] [--plant NAME] [--from-golden] [--repeat N]: the passes of a capture once more, on OpenGL.
+#include "tests/twin/compare.h"
+#include "tests/twin/passes.h"
+
+#include <cstdio>
+#include <exception>
+
+namespace {
+
+using namespace lrsm::twin;
+
+struct Arguments {
+    std::string golden, candidate;
+    std::string plant;
+    bool fromGolden = false;
+    int repeats = 1;
+};
+
+int usage()
+{
+    std::puts("lrsm_twin GOLDEN [-o CANDIDATE] [--plant NAME] [--from-golden] [--repeat N]\n\n"
+              "Runs the passes of the capture GOLDEN on OpenGL 4.5, compares, and writes the buffers to CANDIDATE.\n"
+              "  --from-golden   each pass reads the golden's buffers: differences do not add up\n"
+              "  --repeat N      time: the shortest of N runs\n"
+              "  --plant NAME    with one of these errors:");
+    for (const Plant& plant : plants()) std::printf("    %-18s %-10s %s\n", plant.name, plant.pass, plant.meaning);
+    return 2;
+}
+
+bool parse(int argc, char** argv, Arguments& to)
+{
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        const bool more = i + 1 < argc;
+        if (argument == "--from-golden") {
+            to.fromGolden = true;
+        } else if (argument == "-o" && more) {
+            to.candidate = argv[++i];
+        } else if (argument == "--plant" && more) {
+            to.plant = argv[++i];
+        } else if (argument == "--repeat" && more) {
+            to.repeats = std::max(1, std::atoi(argv[++i]));
+        } else if (argument[0] != '-' && to.golden.empty()) {
+            to.golden = argument;
+        } else {
+            return false;
+        }
+    }
+    return !to.golden.empty();
+}
+
+int run(const Arguments& arguments)
+{
+    std::string whyNot;
+    const auto context = GlContext::create(whyNot);
+    if (!context) {
+        std::fprintf(stderr, "lrsm_twin: %s\n", whyNot.c_str());
+        return 3;
+    }
+    std::printf("%s\n", context->renderer().c_str());
+    Frame frame(arguments.golden, !arguments.fromGolden);
+    frame.repeats = arguments.repeats;
+    Programs programs;
+    for (const std::string& line : runAll(frame, {programs, arguments.plant})) std::printf("left out: %s\n", line.c_str());
+    if (!arguments.candidate.empty()) frame.write(arguments.candidate);
+
+    std::printf("\n%-26s %9s %9s %9s  %-10s %10s\n", "buffer", "elements", "differ", "outside", "tolerance", "largest");
+    bool accepted = true;
+    for (const Difference& d : differences(frame)) {
+        std::printf("%-26s %9zu %9zu %9zu  %-8s %8.3g %8.3g %s\n", d.name.c_str(), d.elements, d.differing, d.outside, d.kind.c_str(), d.value, d.largest,
+                    d.accepted() ? "" : "  REFUSED");
+        accepted = accepted && d.accepted();
+    }
+    std::printf("\n");
+    for (const auto& [pass, seconds] : frame.seconds()) std::printf("%-12s %9.1f ms\n", pass.c_str(), 1e3 * seconds);
+    return accepted ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    Arguments arguments;
+    if (!parse(argc, argv, arguments)) return usage();
+    try {
+        return run(arguments);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "lrsm_twin: %s\n", error.what());
+        return 3;
+    }
+}

@@ -1,0 +1,55 @@
+// Number formats as docs/capture.md has them. Done by hand: drivers round as they please.
+// HALF_NEAREST_EVEN: half_rounding=nearest_even; else toward zero.
+#ifdef PLANT_half_rounding
+#define HALF_NEAREST_EVEN
+#endif
+
+uint halfFromFloat(float v)
+{
+    uint bits = floatBitsToUint(v), sign = (bits >> 16) & 0x8000u, magnitude = bits & 0x7fffffffu;
+    if (magnitude > 0x7f800000u) return sign | 0x7e00u;  // NaN
+    if (magnitude == 0x7f800000u) return sign | 0x7c00u;
+    int exponent = int(magnitude >> 23) - 127;
+    if (exponent < -25) return sign;
+    uint half_;
+    if (exponent > 15) {
+        half_ = 0x7c00u;
+    } else {
+        bool denormal = exponent < -14;
+        uint significand = denormal ? (magnitude & 0x007fffffu) | 0x00800000u : magnitude - (112u << 23);
+        int shift = denormal ? -exponent - 1 : 13;
+        half_ = significand >> shift;
+#ifdef HALF_NEAREST_EVEN
+        uint rest = significand & ((1u << shift) - 1u), tie = 1u << (shift - 1);
+        if (rest > tie || (rest == tie && (half_ & 1u) != 0u)) ++half_;
+#endif
+    }
+#ifndef HALF_NEAREST_EVEN
+    half_ = min(half_, 0x7bffu);  // what is beyond 65504 becomes 65504
+#endif
+    return sign | half_;
+}
+
+uvec4 halfFromFloat(vec4 v) { return uvec4(halfFromFloat(v.x), halfFromFloat(v.y), halfFromFloat(v.z), halfFromFloat(v.w)); }
+
+float floatFromHalf(uint bits)
+{
+    uint sign = (bits & 0x8000u) << 16, magnitude = bits & 0x7fffu;
+    if (magnitude >= 0x0400u) return uintBitsToFloat(sign | ((magnitude << 13) + (112u << 23)));
+    float denormal = float(magnitude) * uintBitsToFloat(0x33800000u);  // 2^-24
+    return sign != 0u ? -denormal : denormal;
+}
+
+vec4 floatFromHalf(uvec4 v) { return vec4(floatFromHalf(v.x), floatFromHalf(v.y), floatFromHalf(v.z), floatFromHalf(v.w)); }
+
+uint unorm16FromFloat(float v)
+{
+    if (!(v > 0.0)) return 0u;
+    precise float scaled = min(v, 1.0) * 65535.0;
+    precise float rounded = scaled + 0.5;
+    return uint(rounded);
+}
+
+uvec4 unorm16FromFloat(vec4 v) { return uvec4(unorm16FromFloat(v.x), unorm16FromFloat(v.y), unorm16FromFloat(v.z), unorm16FromFloat(v.w)); }
+
+vec4 floatFromUnorm16(uvec4 v) { return vec4(v) / 65535.0; }

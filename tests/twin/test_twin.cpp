@@ -1,0 +1,102 @@
+#include "catch.h"
+#include "scratch.h"
+
+#include "capture/record.h"
+#include "core/base/output_folder.h"
+#include "core/base/settings_table.h"
+#include "core/scene/builtin_scenes.h"
+#include "tests/twin/compare.h"
+#include "tests/twin/passes.h"
+
+#include <set>
+
+using namespace lrsm;
+
+namespace {
+
+/// The context of all test cases in this program, made on first use; nullptr where there is none.
+twin::GlContext* context()
+{
+    static std::string whyNot;
+    static const std::unique_ptr<twin::GlContext> made = twin::GlContext::create(whyNot);
+    if (!made) WARN("SKIPPED: " << whyNot);
+    return made.get();
+}
+
+struct Golden {
+    std::string scene, preset;
+};
+
+/// A capture small enough for a test, voxelized as a rasterizer can.
+std::string capture(const ScratchFolder& scratch, const Golden& golden)
+{
+    Settings settings = preset(golden.preset);
+    settings.voxel.mode = Voxelization::raster;
+    settings.voxel.resolution = 32;
+    settings.rsm.resolution = 64;
+    const Scene scene = *makeBuiltinScene(golden.scene);
+    const Requirements needs = analyseRequirements(scene, settings.force);
+    RecordOptions options;
+    options.width = 48;
+    options.height = 36;
+    options.dds = false;
+    const Capture made = recordCapture(scene, scene.cameras.at(0), needs, settings, options, "test");
+    const std::string path = scratch.path(golden.scene + "-" + golden.preset);
+    OutputFolder folder(path);
+    writeCapture(folder, made);
+    folder.commit();
+    return path;
+}
+
+/// "lrsm" of "lrsm 0".
+std::string kindOf(const std::string& pass)
+{
+    const std::size_t digit = pass.find_first_of("0123456789");
+    return digit == std::string::npos ? pass : pass.substr(0, digit - 1);
+}
+
+std::string describe(const twin::Difference& d)
+{
+    return d.name + ": " + std::to_string(d.outside) + " of " + std::to_string(d.elements) + " outside, " + std::to_string(d.differing) + " differ, largest " + std::to_string(d.largest);
+}
+
+}  // namespace
+
+TEST_CASE("twin: every pass on OpenGL, fed with the golden's inputs, is within the manifest's tolerances", "[twin]")
+{
+    if (!context()) return;
+    const Golden golden = GENERATE(Golden{"cornell-box", "literal"}, Golden{"cornell-box", "balanced"}, Golden{"atrium", "balanced"}, Golden{"two-rooms", "literal"});
+    CAPTURE(golden.scene, golden.preset);
+    const ScratchFolder scratch;
+    twin::Frame frame(capture(scratch, golden), false);
+    twin::Programs programs;
+    CHECK(runAll(frame, {programs}).empty());
+
+    // What involves no interpolation and no sampler is the same bits: decisions of coverage and layers, and both mip chains.
+    const std::set<std::string> exact = {"voxelize", "voxel mips", "lrsm"};
+    std::size_t compared = 0;
+    for (const twin::Difference& d : twin::differences(frame)) {
+        INFO(describe(d));
+        CHECK(d.accepted());
+        if (exact.count(kindOf(d.pass))) CHECK(d.differing == 0);
+        compared += d.elements > 0;
+    }
+    CHECK(compared > 30);
+}
+
+TEST_CASE("twin: an error planted in a shader is named at its pass, and at no other", "[twin]")
+{
+    if (!context()) return;
+    const ScratchFolder scratch;
+    const std::string folder = capture(scratch, {"cornell-box", "balanced"});
+    twin::Programs programs;
+    for (const twin::Plant& plant : twin::plants()) {
+        twin::Frame frame(folder, false);
+        runAll(frame, {programs, plant.name});
+        std::set<std::string> refused;
+        for (const twin::Difference& d : twin::differences(frame))
+            if (!d.accepted()) refused.insert(kindOf(d.pass));
+        INFO(plant.name);
+        CHECK(refused == std::set<std::string>{plant.pass});
+    }
+}
