@@ -22,7 +22,7 @@ DdsTexture filled(DdsTexture texture)
 
 void setWord(std::vector<std::byte>& file, std::size_t word, std::uint32_t value) { std::memcpy(file.data() + 4 * word, &value, 4); }
 
-std::string messageOf(const std::vector<std::byte>& file)
+std::string messageOfDds(const std::vector<std::byte>& file)
 {
     try {
         decodeDds(file, "a.dds");
@@ -92,7 +92,7 @@ TEST_CASE("dds: arrays, mips and volumes read back as written, and as an indepen
 TEST_CASE("dds: malformed files give one line that begins with the place", "[capture][dds]")
 {
     const std::vector<std::byte> good = encodeDds(filled({DxgiFormat::R16G16B16A16_FLOAT, 8, 8, 1, 4, 2, false, {}}));
-    REQUIRE(messageOf(good) == "read");
+    REQUIRE(messageOfDds(good) == "read");
     struct Case {
         std::size_t word;
         std::uint32_t value;
@@ -114,13 +114,13 @@ TEST_CASE("dds: malformed files give one line that begins with the place", "[cap
     }));
     std::vector<std::byte> file = good;
     setWord(file, c.word, c.value);
-    const std::string message = messageOf(file);
+    const std::string message = messageOfDds(file);
     CAPTURE(c.word, message);
     CHECK(message.starts_with("a.dds: "));
     CHECK(message.find(c.why) != std::string::npos);
 
     for (const std::size_t size : {std::size_t(0), std::size_t(3), std::size_t(100), std::size_t(147), good.size() - 1}) {
         CAPTURE(size);
-        CHECK(messageOf({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}) != "read");
+        CHECK(messageOfDds({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}) != "read");
     }
 }

@@ -30,7 +30,7 @@ std::vector<std::byte> fileWithHeader(std::string header, std::size_t dataBytes,
     return {begin, begin + text.size()};
 }
 
-std::string messageOf(const std::vector<std::byte>& file)
+std::string messageOfNpy(const std::vector<std::byte>& file)
 {
     try {
         decodeNpy(file, "a.npy");
@@ -92,7 +92,7 @@ TEST_CASE("npy: numpy reads the very values, and we read numpy's files", "[captu
 TEST_CASE("npy: malformed files give one line that begins with the place", "[capture][npy]")
 {
     const std::string good = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
-    CHECK(messageOf(fileWithHeader(good, 24)) == "read");
+    CHECK(messageOfNpy(fileWithHeader(good, 24)) == "read");
     struct Case {
         std::vector<std::byte> file;
         std::string why;
@@ -114,7 +114,7 @@ TEST_CASE("npy: malformed files give one line that begins with the place", "[cap
         {fileWithHeader(good + " + 1", 24), "text follows"},
     };
     for (const Case& c : cases) {
-        const std::string message = messageOf(c.file);
+        const std::string message = messageOfNpy(c.file);
         CAPTURE(c.why, message);
         CHECK(message.starts_with("a.npy"));
         CHECK(message.find(c.why) != std::string::npos);
@@ -122,5 +122,5 @@ TEST_CASE("npy: malformed files give one line that begins with the place", "[cap
     }
     std::vector<std::byte> cut = fileWithHeader(good, 0);
     cut.resize(40);
-    CHECK(messageOf(cut).find("within its header") != std::string::npos);
+    CHECK(messageOfNpy(cut).find("within its header") != std::string::npos);
 }
