@@ -49,6 +49,16 @@ TEST_CASE("program: validate climbs the ladder of a scene and writes a page, JSO
     CHECK(one.out == many.out);
 }
 
+TEST_CASE("program: validate --extremes runs what is asked for", "[apps][validate]")
+{
+    Sandbox box;
+    const Outcome run = box.run("validate --extremes --only moments --json");
+    REQUIRE(run.code == 0);
+    const ValidateJson json = ValidateJson::parse(run.out);
+    REQUIRE(json["extremes"]["results"].size() >= 1);
+    for (const ValidateJson& result : json["extremes"]["results"]) CHECK(result["outcome"] != "broken");
+}
+
 TEST_CASE("program: validate refuses what has no meaning in one line", "[apps][validate]")
 {
     Sandbox box;

@@ -8,7 +8,6 @@
 namespace lrsm::extremes {
 namespace {
 
-const float kNan = std::nanf("");
 
 /// One more triangle in the room's first mesh.
 void addTriangle(Scene& scene, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal = Vec3(0, 1, 0))

@@ -8,8 +8,6 @@
 namespace lrsm::extremes {
 namespace {
 
-constexpr float kDegree = kPi / 180.0f;
-const float kNan = std::nanf("");
 
 template <class Change>
 Case finite(const std::string& name, const std::string& what, Change change)

@@ -10,7 +10,6 @@
 namespace lrsm::extremes {
 namespace {
 
-constexpr float kDegree = kPi / 180.0f;
 
 void apply(Settings& settings, Mode mode)
 {

@@ -3,8 +3,13 @@
 #include "core/scene/scene.h"
 #include "validation/extremes/catalogue.h"
 
+#include <limits>
+
 /// Small worlds that the cases bend out of shape, and what is measured on a picture of them.
 namespace lrsm::extremes {
+
+inline constexpr float kDegree = kPi / 180.0f;
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct World {
     Scene scene;
