@@ -1,0 +1,84 @@
+#include "catch.h"
+#include "sandbox.h"
+
+#include <nlohmann/json.hpp>
+
+// lrsm capture, as a user runs it.
+
+using namespace lrsm::test;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::string kTiny = " --size 32x24 --set voxel_resolution=32 --set rsm_resolution=64 ";
+
+}  // namespace
+
+TEST_CASE("capture program: holds the hashes of the frame that render makes", "[apps][capture]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("render two-rooms -o frame" + kTiny).code == 0);
+    const Outcome outcome = box.run("capture two-rooms -o golden" + kTiny);
+    REQUIRE(outcome.code == 0);
+    CHECK(contains(outcome.out, "buffers and textures: "));
+    const Json frame = Json::parse(readText(box.here() / "frame" / "frame.json")), manifest = Json::parse(readText(box.here() / "golden" / "manifest.json"));
+    CHECK(manifest["scene"]["sha256"] == frame["scene"]["sha256"]);
+    CHECK(manifest["settings"] == frame["settings"]);
+    REQUIRE(manifest["passes"].size() == frame["passes"].size());
+    for (std::size_t i = 0; i < manifest["passes"].size(); ++i) {
+        CHECK(manifest["passes"][i]["name"] == frame["passes"][i]["name"]);
+        CHECK(manifest["passes"][i]["sha256"] == frame["passes"][i]["sha256"]);
+    }
+    for (const char* file : {"frame.exr", "rsm0.exr", "contact-sheet.png", "lrsm0.depth.dds", "voxel.dds"}) CHECK(fs::exists(box.here() / "golden" / file));
+}
+
+TEST_CASE("capture program: made twice it is the same bytes, whatever the threads", "[apps][capture][threads]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("capture cornell-box -o one --threads 1 --quiet" + kTiny).code == 0);
+    const Outcome again = box.run("capture cornell-box -o two --threads 3 --json" + kTiny);
+    REQUIRE(again.code == 0);
+    std::size_t files = 0, bytes = 0;
+    for (const auto& entry : fs::directory_iterator(box.here() / "one")) {
+        CAPTURE(entry.path().filename().string());
+        CHECK(readText(entry.path()) == readText(box.here() / "two" / entry.path().filename()));
+        ++files;
+        const std::string kind = entry.path().extension().string();
+        if (kind == ".npy" || kind == ".dds") bytes += entry.file_size();
+    }
+    CHECK(files > 50);
+    const Json summary = Json::parse(again.out);
+    CHECK(summary["predicted_bytes"] == bytes);
+    CHECK(summary["bytes"] == bytes);
+}
+
+TEST_CASE("capture program: some passes, no textures, no pictures", "[apps][capture]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("capture cornell-box -o out --only lrsm --only voxel-mips,gbuffer --no-dds --no-pictures --quiet" + kTiny).code == 0);
+    CHECK(fs::exists(box.here() / "out" / "gbuffer.normal.npy"));
+    CHECK(fs::exists(box.here() / "out" / "lrsm0.radiance.mip5.npy"));
+    CHECK_FALSE(fs::exists(box.here() / "out" / "rsm0.depth.npy"));
+    for (const auto& entry : fs::directory_iterator(box.here() / "out")) {
+        const std::string kind = entry.path().extension().string();
+        CHECK((kind == ".npy" || kind == ".json"));
+    }
+}
+
+TEST_CASE("capture program: bad usage is one line, exit code 2, and nothing left behind", "[apps][capture]")
+{
+    struct Case {
+        std::string arguments, message;
+    };
+    const auto c = GENERATE(values<Case>({{"capture cornell-box", "needs -o FOLDER"},
+                                          {"capture nowhere -o out", "nowhere"},
+                                          {"capture cornell-box -o out --only lrsm,cone" + kTiny, "--only cone"},
+                                          {"capture cornell-box -o out --size 0x0", "--size 0x0"}}));
+    const Sandbox box;
+    const Outcome outcome = box.run(c.arguments);
+    CAPTURE(c.arguments, outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(isOneLine(outcome.err));
+    CHECK(contains(outcome.err, c.message));
+    CHECK(box.empty());
+}
