@@ -29,12 +29,13 @@ class Capture:
 
 
 def to_half(values, rounding):
-    """Float to half: d3d rounds toward zero and stops at 65504, nearest_even is numpy's own."""
-    with np.errstate(over="ignore"):
-        half = values.astype(np.float16)
+    """Float to half: nearest_even is numpy's own, d3d rounds toward zero; what is finite stops at 65504."""
+    largest = F(np.finfo(np.float16).max)
+    values = np.where(np.isfinite(values), np.clip(values, -largest, largest), values)
+    half = values.astype(np.float16)
     if rounding == "d3d":
         too_far = np.abs(half.astype(F)) > np.abs(values)
-        half = (half.view(np.uint16) - too_far.astype(np.uint16)).view(np.float16)  # one step toward zero; infinity becomes 65504
+        half = (half.view(np.uint16) - too_far.astype(np.uint16)).view(np.float16)  # one step toward zero
     return half
 
 

@@ -181,6 +181,7 @@ TEST_CASE("capture: numpy alone computes passes anew, bit for bit", "[capture][n
     LRSM_NEED_PYTHON(python, "numpy");
     Settings paper = smallSettings();
     paper.voxel.axes = OpacityAxes::isotropic;
+    paper.cones.estimator = Estimator::paper;
     paper.layers.overlap = 0.2f;
     paper.layers.depthLayers = 3;
     paper.cones.layerSelection = LayerSelection::centre;
