@@ -10,15 +10,15 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const std::string kTiny = " --size 32x24 --set voxel_resolution=32 --set rsm_resolution=64 ";
+const std::string kTinyCapture = " --size 32x24 --set voxel_resolution=32 --set rsm_resolution=64 ";
 
 }  // namespace
 
 TEST_CASE("capture program: holds the hashes of the frame that render makes", "[apps][capture]")
 {
     const Sandbox box;
-    REQUIRE(box.run("render two-rooms -o frame" + kTiny).code == 0);
-    const Outcome outcome = box.run("capture two-rooms -o golden" + kTiny);
+    REQUIRE(box.run("render two-rooms -o frame" + kTinyCapture).code == 0);
+    const Outcome outcome = box.run("capture two-rooms -o golden" + kTinyCapture);
     REQUIRE(outcome.code == 0);
     CHECK(contains(outcome.out, "buffers and textures: "));
     const Json frame = Json::parse(readText(box.here() / "frame" / "frame.json")), manifest = Json::parse(readText(box.here() / "golden" / "manifest.json"));
@@ -35,8 +35,8 @@ TEST_CASE("capture program: holds the hashes of the frame that render makes", "[
 TEST_CASE("capture program: made twice it is the same bytes, whatever the threads", "[apps][capture][threads]")
 {
     const Sandbox box;
-    REQUIRE(box.run("capture cornell-box -o one --threads 1 --quiet" + kTiny).code == 0);
-    const Outcome again = box.run("capture cornell-box -o two --threads 3 --json" + kTiny);
+    REQUIRE(box.run("capture cornell-box -o one --threads 1 --quiet" + kTinyCapture).code == 0);
+    const Outcome again = box.run("capture cornell-box -o two --threads 3 --json" + kTinyCapture);
     REQUIRE(again.code == 0);
     std::size_t files = 0, bytes = 0;
     for (const auto& entry : fs::directory_iterator(box.here() / "one")) {
@@ -55,7 +55,7 @@ TEST_CASE("capture program: made twice it is the same bytes, whatever the thread
 TEST_CASE("capture program: some passes, no textures, no pictures", "[apps][capture]")
 {
     const Sandbox box;
-    REQUIRE(box.run("capture cornell-box -o out --only lrsm --only voxel-mips,gbuffer --no-dds --no-pictures --quiet" + kTiny).code == 0);
+    REQUIRE(box.run("capture cornell-box -o out --only lrsm --only voxel-mips,gbuffer --no-dds --no-pictures --quiet" + kTinyCapture).code == 0);
     CHECK(fs::exists(box.here() / "out" / "gbuffer.normal.npy"));
     CHECK(fs::exists(box.here() / "out" / "lrsm0.radiance.mip5.npy"));
     CHECK_FALSE(fs::exists(box.here() / "out" / "rsm0.depth.npy"));
@@ -72,7 +72,7 @@ TEST_CASE("capture program: bad usage is one line, exit code 2, and nothing left
     };
     const auto c = GENERATE(values<Case>({{"capture cornell-box", "needs -o FOLDER"},
                                           {"capture nowhere -o out", "nowhere"},
-                                          {"capture cornell-box -o out --only lrsm,cone" + kTiny, "--only cone"},
+                                          {"capture cornell-box -o out --only lrsm,cone" + kTinyCapture, "--only cone"},
                                           {"capture cornell-box -o out --size 0x0", "--size 0x0"}}));
     const Sandbox box;
     const Outcome outcome = box.run(c.arguments);
