@@ -1,4 +1,5 @@
 // Sec. 4.2, 4.3 and 5 of Sugihara, Rauwendaal, Salvi: Layered Reflective Shadow Maps for Voxel-based Indirect Illumination, HPG 2014.
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/settings_table.h"
 #include "lrsm/layers.h"
@@ -259,6 +260,7 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
         lrsm.validTexelsPerLayer.push_back(counts[i]);
     }
     lrsm.texelsPerLayer = layOutLevels(lrsm.baseResolution, lrsm.levelOffset);
+    requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map", "lower rsm_resolution or the number of layers");
     lrsm.texels.resize(lrsm.ranges.size() * lrsm.texelsPerLayer);
     fillLevels(Prefilter(rsm, settings, layersOf, keptIndex, lrsm), lrsm);
     return lrsm;

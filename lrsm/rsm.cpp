@@ -1,6 +1,7 @@
 // Dachsbacher and Stamminger, "Reflective Shadow Maps", I3D 2005.
 #include "lrsm/rsm.h"
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/settings_table.h"
 #include "core/raster/draw_scene.h"
@@ -48,6 +49,8 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
     checkLight(light);
     checkMaterials(scene);
     Rsm rsm;
+    requireMemory(Rsm::predictBytes(settings.resolution) + std::size_t(settings.resolution) * std::size_t(settings.resolution) * sizeof(Fragment),
+                  "reflective shadow map of light \"" + light.name + "\"", "lower rsm_resolution, or take fewer lights");
     rsm.projection = fitLightProjection(light, scene.bounds, settings.resolution);
     const int n = rsm.projection.resolution;
     const SceneFragments drawn = drawScene(scene, clipFromWorld(rsm.projection), needs, n, n);

@@ -1,6 +1,7 @@
 #include "voxel/voxelize.h"
 
 #include "core/base/check.h"
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/settings_table.h"
 #include "core/scene/check_scene.h"
@@ -20,6 +21,7 @@ BitGrid emptyGrid(const VoxelFrame& frame)
     BitGrid grid;
     grid.frame = frame;
     const auto edge = std::size_t(BitGrid::bricksPerEdge(frame.resolution));
+    requireMemory(edge * edge * edge * sizeof(std::uint64_t), "voxel grid", "lower voxel_resolution");
     try {
         grid.bricks.assign(edge * edge * edge, 0);
     } catch (const std::bad_alloc&) {
