@@ -153,7 +153,7 @@ void describeRsm(Catalogue& out, const RsmSettings& settings, std::size_t light)
         buffer.dds = DdsPlace{prefix + name + ".dds", 0, as.dds, false};
     };
     map("radiance", {"r", "g", "b", "coverage"}, {"reflected radiance albedo L <n.l> / pi; coverage 1 where a surface was drawn", "light's map", "W/(m^2 sr)"},
-        tolerances::mapRadiance(), format);
+        tolerances::mapRadiance(n), format);
     map("normal", {"x", "y", "z", "n_dot_l"}, {"shading normal towards the light, and its cosine to it", kWorld, ""}, tolerances::mapNormal(n), format);
     map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(n),
         {Dtype::f4, Encoding::number, DxgiFormat::R32_FLOAT});

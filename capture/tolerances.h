@@ -8,7 +8,7 @@ namespace lrsm::tolerances {
 Tolerance given();          ///< scene and tables: a candidate need not have them
 Tolerance voxels();         ///< of the bits
 Tolerance voxelMip(bool unorm);
-Tolerance mapRadiance();    ///< of an RSM
+Tolerance mapRadiance(int resolution);  ///< of an RSM
 Tolerance mapNormal(int resolution);
 Tolerance mapDepth(int resolution);
 Tolerance layerHalf(bool half);

@@ -1,9 +1,11 @@
-// lrsm_twin GOLDEN [-o CANDIDATE] [--plant NAME] [--from-golden] [--repeat N]: the passes of a capture once more, on OpenGL.
+// lrsm_twin GOLDEN [options]: the passes of a capture once more, on OpenGL.
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"
 
 #include <cstdio>
 #include <exception>
+#include <fstream>
+#include <map>
 
 namespace {
 
@@ -12,17 +14,21 @@ using namespace lrsm::twin;
 struct Arguments {
     std::string golden, candidate;
     std::string plant;
-    bool fromGolden = false;
+    std::vector<std::string> frames;
+    bool fromGolden = false, driverFormats = false;
     int repeats = 1;
 };
 
 int usage()
 {
-    std::puts("lrsm_twin GOLDEN [-o CANDIDATE] [--plant NAME] [--from-golden] [--repeat N]\n\n"
+    std::puts("lrsm_twin GOLDEN [options]\n\n"
               "Runs the passes of the capture GOLDEN on OpenGL 4.5, compares, and writes the buffers to CANDIDATE.\n"
-              "  --from-golden   each pass reads the golden's buffers: differences do not add up\n"
-              "  --repeat N      time: the shortest of N runs\n"
-              "  --plant NAME    with one of these errors:");
+              "  -o CANDIDATE      folder for the buffers\n"
+              "  --from-golden     each pass reads the golden's buffers: differences do not add up\n"
+              "  --driver-formats  conversions and 8-bit filtering as the driver does them\n"
+              "  --repeat N        time: the shortest of N runs\n"
+              "  --frame FILE      a frame.json of the same frame, to print its times beside; more than one: the shortest\n"
+              "  --plant NAME      with one of these errors:");
     for (const Plant& plant : plants()) std::printf("    %-18s %-10s %s\n", plant.name, plant.pass, plant.meaning);
     return 2;
 }
@@ -34,6 +40,10 @@ bool parse(int argc, char** argv, Arguments& to)
         const bool more = i + 1 < argc;
         if (argument == "--from-golden") {
             to.fromGolden = true;
+        } else if (argument == "--driver-formats") {
+            to.driverFormats = true;
+        } else if (argument == "--frame" && more) {
+            to.frames.push_back(argv[++i]);
         } else if (argument == "-o" && more) {
             to.candidate = argv[++i];
         } else if (argument == "--plant" && more) {
@@ -49,6 +59,33 @@ bool parse(int argc, char** argv, Arguments& to)
     return !to.golden.empty();
 }
 
+/// Milliseconds of each pass in the fastest of some frame.json.
+std::map<std::string, double> timesOf(const std::vector<std::string>& files)
+{
+    std::map<std::string, double> times;
+    for (const std::string& file : files) {
+        std::ifstream in(file);
+        const Json frame = Json::parse(in);
+        for (const Json& pass : frame["passes"]) {
+            const double milliseconds = pass["milliseconds"];
+            const auto [at, isNew] = times.emplace(pass["name"], milliseconds);
+            if (!isNew) at->second = std::min(at->second, milliseconds);
+        }
+    }
+    return times;
+}
+
+void printTimes(const Frame& frame, const std::map<std::string, double>& others)
+{
+    std::printf("\n%-12s %10s %10s %8s\n", "pass", "OpenGL", "lrsm", "ratio");
+    for (const auto& [pass, seconds] : frame.seconds()) {
+        const auto other = others.find(pass);
+        std::printf("%-12s %7.1f ms", pass.c_str(), 1e3 * seconds);
+        if (other != others.end()) std::printf(" %7.1f ms %8.2f", other->second, 1e3 * seconds / other->second);
+        std::printf("\n");
+    }
+}
+
 int run(const Arguments& arguments)
 {
     std::string whyNot;
@@ -61,7 +98,7 @@ int run(const Arguments& arguments)
     Frame frame(arguments.golden, !arguments.fromGolden);
     frame.repeats = arguments.repeats;
     Programs programs;
-    for (const std::string& line : runAll(frame, {programs, arguments.plant})) std::printf("left out: %s\n", line.c_str());
+    for (const std::string& line : runAll(frame, {programs, arguments.plant, arguments.driverFormats})) std::printf("left out: %s\n", line.c_str());
     if (!arguments.candidate.empty()) frame.write(arguments.candidate);
 
     std::printf("\n%-26s %9s %9s %9s  %-10s %10s\n", "buffer", "elements", "differ", "outside", "tolerance", "largest");
@@ -71,8 +108,7 @@ int run(const Arguments& arguments)
                     d.accepted() ? "" : "  REFUSED");
         accepted = accepted && d.accepted();
     }
-    std::printf("\n");
-    for (const auto& [pass, seconds] : frame.seconds()) std::printf("%-12s %9.1f ms\n", pass.c_str(), 1e3 * seconds);
+    printTimes(frame, timesOf(arguments.frames));
     return accepted ? 0 : 1;
 }
 

@@ -92,21 +92,22 @@ void rsm(Frame& frame, const Options& options, int light)
     const StorageBuffer lights = lightBuffer(frame);
     const SceneDrawing scene(frame);
 
-    const Texture radiance = makeTexture(GL_TEXTURE_2D, kUint16x4, n, n, 1, 1), normal = makeTexture(GL_TEXTURE_2D, kUint16x4, n, n, 1, 1);
+    const TexelFormat half = options.driverFormats ? kHalf4 : kUint16x4;
+    const Texture radiance = makeTexture(GL_TEXTURE_2D, half, n, n, 1, 1), normal = makeTexture(GL_TEXTURE_2D, half, n, n, 1, 1);
     const Texture depth = makeTexture(GL_TEXTURE_2D, kFloat, n, n, 1, 1), zBuffer = makeTexture(GL_TEXTURE_2D, kDepth, n, n, 1, 1);
     const Texture* const colours[] = {&radiance, &normal, &depth};
     const Framebuffer target = makeFramebuffer(colours, zBuffer);
     const std::string index = std::to_string(light), prefix = "rsm" + index + ".";
     frame.time("rsm " + index, [&] {
         const std::array<float, 4> far = {1.0f, 0.0f, 0.0f, 0.0f};
-        clear(radiance, kUint16x4);
-        clear(normal, kUint16x4);
+        clear(radiance, half);
+        clear(normal, half);
         glClearNamedFramebufferfv(target(), GL_COLOR, 2, far.data());
         scene.draw(target, n, n, program);
     });
     const std::size_t texels = std::size_t(n) * std::size_t(n);
-    frame.output(prefix + "radiance", download(radiance, kUint16x4, 0, texels));
-    frame.output(prefix + "normal", download(normal, kUint16x4, 0, texels));
+    frame.output(prefix + "radiance", download(radiance, half, 0, texels));
+    frame.output(prefix + "normal", download(normal, half, 0, texels));
     frame.output(prefix + "depth", download(depth, kFloat, 0, texels));
 }
 
@@ -122,13 +123,15 @@ void lrsm(Frame& frame, const Options& options, int light)
     const std::array<Texture, 3> maps = {inputTexture(frame, rsmName + "radiance", GL_TEXTURE_2D, kUint16x4, n, n, 1),
                                          inputTexture(frame, rsmName + "normal", GL_TEXTURE_2D, kUint16x4, n, n, 1),
                                          inputTexture(frame, rsmName + "depth", GL_TEXTURE_2D, kFloat, n, n, 1)};
+    const TexelFormat half = options.driverFormats ? kHalf4 : kUint16x4, unorm = options.driverFormats ? kUnorm16x4 : kUint16x4;
+    const std::array<TexelFormat, 3> formats = {half, half, unorm};
     std::array<Texture, 3> out;
-    for (Texture& texture : out) texture = makeTexture(GL_TEXTURE_2D_ARRAY, kUint16x4, base, base, layers, levels);
+    for (std::size_t i = 0; i < 3; ++i) out[i] = makeTexture(GL_TEXTURE_2D_ARRAY, formats[i], base, base, layers, levels);
     const std::vector<float> bounds = layerBounds(frame, light);
     const StorageBuffer layerBuffer = makeBuffer(std::as_bytes(std::span(bounds)));
     bindBuffer(0, layerBuffer);
     const auto target = [&](int level) {
-        for (GLuint i = 0; i < 3; ++i) glBindImageTexture(i, out[i](), level, GL_TRUE, 0, GL_WRITE_ONLY, kUint16x4.internal);
+        for (GLuint i = 0; i < 3; ++i) glBindImageTexture(i, out[i](), level, GL_TRUE, 0, GL_WRITE_ONLY, formats[i].internal);
     };
     frame.time("lrsm " + index, [&] {
         for (GLuint i = 0; i < 3; ++i) bindTexture(i, maps[i]);
@@ -147,7 +150,7 @@ void lrsm(Frame& frame, const Options& options, int light)
     for (std::size_t i = 0; i < 3; ++i)
         for (int level = 0; level < levels; ++level) {
             const std::size_t edge = std::size_t(base >> level);
-            frame.output(name + parts[i] + ".mip" + std::to_string(level), download(out[i], kUint16x4, level, edge * edge * std::size_t(layers)));
+            frame.output(name + parts[i] + ".mip" + std::to_string(level), download(out[i], formats[i], level, edge * edge * std::size_t(layers)));
         }
 }
 

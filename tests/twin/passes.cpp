@@ -46,6 +46,7 @@ const Program& Options::program(const std::string& pass, const std::vector<Stage
 {
     for (const Plant& known : kPlants)
         if (plant == known.name && pass == known.pass) defines.push_back("PLANT_" + plant);
+    if (driverFormats) defines.push_back("DRIVER_FORMATS");
     return programs.get(stages, defines);
 }
 

@@ -19,7 +19,9 @@ std::span<const Plant> plants();
 struct Options {
     Programs& programs;
     std::string plant = {};  ///< none if empty
-    /// The program of a pass ("lrsm" for "lrsm 0"), with the plant if it belongs to this pass.
+    /// Conversions and filtering left to the driver: halves and UNORM by its stores, opacity in 8-bit textures. Else as the page has them.
+    bool driverFormats = false;
+    /// The program of a pass ("lrsm" for "lrsm 0"), with the plant if it belongs to this pass, and DRIVER_FORMATS.
     const Program& program(const std::string& pass, const std::vector<Stage>& stages, std::vector<std::string> defines) const;
     const Program& compute(const std::string& pass, const std::vector<std::string>& files, std::vector<std::string> defines) const;
 };

@@ -43,27 +43,30 @@ StorageBuffer outputBuffer(std::size_t bytes, GLuint binding)
     return buffer;
 }
 
-/// Voxels and mips as one volume for a sampler. 16 bits a channel hold a UNORM8 exactly (v 257 / 65535 = v / 255), and software samplers
-/// filter them in float32 where they filter 8-bit textures in 8 bits.
-Texture opacityTexture(Frame& frame)
+/// Voxels and mips as one volume for a sampler. 16 bits a channel hold a UNORM8 exactly (v 257 / 65535 = v / 255); samplers may filter 8-bit
+/// textures in 8-bit arithmetic.
+Texture opacityTexture(Frame& frame, bool eightBits)
 {
     const Json& grid = frame.manifest()["grid"];
     const int n = grid["resolution"], levels = grid["levels"];
     const bool directional = frame.is("opacity_axes", "directional");
-    const TexelFormat format = directional ? kUnorm16x4 : kUnorm16;
+    const TexelFormat format = eightBits ? (directional ? kUnorm8x4 : kUnorm8) : directional ? kUnorm16x4 : kUnorm16;
     Texture texture = makeTexture(GL_TEXTURE_3D, format, n, n, n, levels);
     for (int level = 0; level < levels; ++level) {
         const std::size_t m = std::size_t(n >> level), channels = directional ? 4 : 1, rowBytes = (m + 7) / 8;
         const NpyArray& from = frame.input(level == 0 ? "voxel.bits" : "voxel.mip" + std::to_string(level));
         const auto* bytes = reinterpret_cast<const std::uint8_t*>(from.bytes.data());
         std::vector<std::uint16_t> texels(m * m * m * channels);
+        std::vector<std::uint8_t> narrow(eightBits ? texels.size() : 0);
         for (std::size_t i = 0; i < m * m * m; ++i)
             for (std::size_t c = 0; c < std::min<std::size_t>(channels, 3); ++c) {
                 const std::size_t x = i % m, row = i / m;
                 const int value = level > 0 ? bytes[i * (directional ? 3 : 1) + c] : 255 * (bytes[row * rowBytes + x / 8] >> (x & 7) & 1);
                 texels[i * channels + c] = std::uint16_t(257 * value);
+                if (eightBits) narrow[i * channels + c] = std::uint8_t(value);
             }
-        upload(texture, GL_TEXTURE_3D, format, level, int(m), int(m), int(m), texels.data());
+        const void* data = eightBits ? static_cast<const void*>(narrow.data()) : texels.data();
+        upload(texture, GL_TEXTURE_3D, format, level, int(m), int(m), int(m), data);
     }
     return texture;
 }
@@ -189,7 +192,7 @@ void direct(Frame& frame, const Options& options)
     }
     const Sampler sampler = borderSampler();
     if (frame.is("shadows", "cone")) {
-        opacity = opacityTexture(frame);
+        opacity = opacityTexture(frame, options.driverFormats);
         bindTexture(3, opacity, &sampler);
     }
     const StorageBuffer out = outputBuffer(12 * pixels.count(), 7);
@@ -230,7 +233,7 @@ void cones(Frame& frame, const Options& options)
     for (std::size_t i = 0; i < lights.size(); ++i) layerCount += layersStored(frame, int(i));
     const int base = lights.empty() ? 1 : lights[0]["base_resolution"].get<int>(), levels = lights.empty() ? 1 : lights[0]["levels"].get<int>();
     const Texture radiance = allLights(frame, "lrsm", "radiance", kHalf4, base, layerCount, levels), normal = allLights(frame, "lrsm", "normal", kHalf4, base, layerCount, levels),
-                  depth = allLights(frame, "lrsm", "depth", kUnorm16x4, base, layerCount, levels), opacity = opacityTexture(frame);
+                  depth = allLights(frame, "lrsm", "depth", kUnorm16x4, base, layerCount, levels), opacity = opacityTexture(frame, options.driverFormats);
     const Sampler sampler = borderSampler();
     bindTexture(0, radiance, &sampler);
     bindTexture(1, normal, &sampler);

@@ -1,4 +1,4 @@
-// Number formats as docs/capture.md has them. Done by hand: drivers round as they please.
+// Number formats as docs/capture.md has them. Done by hand: drivers round as they please (DRIVER_FORMATS: let them).
 // HALF_NEAREST_EVEN: half_rounding=nearest_even; else toward zero.
 #ifdef PLANT_half_rounding
 #define HALF_NEAREST_EVEN
@@ -53,3 +53,26 @@ uint unorm16FromFloat(float v)
 uvec4 unorm16FromFloat(vec4 v) { return uvec4(unorm16FromFloat(v.x), unorm16FromFloat(v.y), unorm16FromFloat(v.z), unorm16FromFloat(v.w)); }
 
 vec4 floatFromUnorm16(uvec4 v) { return vec4(v) / 65535.0; }
+
+// What a texture of halves or of UNORM takes and gives.
+#ifdef DRIVER_FORMATS
+#define HALF4 vec4
+#define HALF(v) (v)
+#define UNORM16(v) (v)
+#define IMAGE image2DArray
+#define HALF_FORMAT rgba16f
+#define UNORM_FORMAT rgba16
+#define TEXTURE sampler2DArray
+#define FROM_HALF(t) (t)
+#define FROM_UNORM16(t) (t)
+#else
+#define HALF4 uvec4
+#define HALF(v) halfFromFloat(v)
+#define UNORM16(v) unorm16FromFloat(v)
+#define IMAGE uimage2DArray
+#define HALF_FORMAT rgba16ui
+#define UNORM_FORMAT rgba16ui
+#define TEXTURE usampler2DArray
+#define FROM_HALF(t) floatFromHalf(t)
+#define FROM_UNORM16(t) floatFromUnorm16(t)
+#endif

@@ -1,12 +1,12 @@
 // One mip of all layers from the stored one below it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform usampler2DArray radianceBelow;
-layout(binding = 1) uniform usampler2DArray normalBelow;
-layout(binding = 2) uniform usampler2DArray depthBelow;
-layout(binding = 0, rgba16ui) writeonly uniform uimage2DArray outRadiance;
-layout(binding = 1, rgba16ui) writeonly uniform uimage2DArray outNormal;
-layout(binding = 2, rgba16ui) writeonly uniform uimage2DArray outDepth;
+layout(binding = 0) uniform TEXTURE radianceBelow;
+layout(binding = 1) uniform TEXTURE normalBelow;
+layout(binding = 2) uniform TEXTURE depthBelow;
+layout(binding = 0, HALF_FORMAT) writeonly uniform IMAGE outRadiance;
+layout(binding = 1, HALF_FORMAT) writeonly uniform IMAGE outNormal;
+layout(binding = 2, UNORM_FORMAT) writeonly uniform IMAGE outDepth;
 uniform int resolution, level;  // of the level made
 
 ivec3 childOf(ivec3 at, int i)
@@ -24,17 +24,17 @@ vec4 box(vec4 a, vec4 b, vec4 c, vec4 d)
     return mean;
 }
 
-vec4 halves(usampler2DArray below, ivec3 at)
+vec4 halves(TEXTURE below, ivec3 at)
 {
     vec4 c[4];
-    for (int i = 0; i < 4; ++i) c[i] = floatFromHalf(texelFetch(below, childOf(at, i), level - 1));
+    for (int i = 0; i < 4; ++i) c[i] = FROM_HALF(texelFetch(below, childOf(at, i), level - 1));
     return box(c[0], c[1], c[2], c[3]);
 }
 
-vec4 unorms(usampler2DArray below, ivec3 at)
+vec4 unorms(TEXTURE below, ivec3 at)
 {
     vec4 c[4];
-    for (int i = 0; i < 4; ++i) c[i] = floatFromUnorm16(texelFetch(below, childOf(at, i), level - 1));
+    for (int i = 0; i < 4; ++i) c[i] = FROM_UNORM16(texelFetch(below, childOf(at, i), level - 1));
     return box(c[0], c[1], c[2], c[3]);
 }
 
@@ -42,7 +42,7 @@ void main()
 {
     ivec3 at = ivec3(gl_GlobalInvocationID);
     if (any(greaterThanEqual(at.xy, ivec2(resolution)))) return;
-    imageStore(outRadiance, at, halfFromFloat(halves(radianceBelow, at)));
-    imageStore(outNormal, at, halfFromFloat(halves(normalBelow, at)));
-    imageStore(outDepth, at, unorm16FromFloat(unorms(depthBelow, at)));
+    imageStore(outRadiance, at, HALF(halves(radianceBelow, at)));
+    imageStore(outNormal, at, HALF(halves(normalBelow, at)));
+    imageStore(outDepth, at, UNORM16(unorms(depthBelow, at)));
 }

@@ -4,9 +4,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform usampler2D rsmRadiance;  // halves
 layout(binding = 1) uniform usampler2D rsmNormal;
 layout(binding = 2) uniform sampler2D rsmDepth;
-layout(binding = 0, rgba16ui) writeonly uniform uimage2DArray outRadiance;
-layout(binding = 1, rgba16ui) writeonly uniform uimage2DArray outNormal;
-layout(binding = 2, rgba16ui) writeonly uniform uimage2DArray outDepth;
+layout(binding = 0, HALF_FORMAT) writeonly uniform IMAGE outRadiance;
+layout(binding = 1, HALF_FORMAT) writeonly uniform IMAGE outNormal;
+layout(binding = 2, UNORM_FORMAT) writeonly uniform IMAGE outDepth;
 
 struct Layer {
     vec4 depth;   // min, max; 1 for the first and for the last slice of depth
@@ -40,7 +40,7 @@ void main()
 #ifdef PLANT_swapped_layer
     to.z = at.z ^ 1;
 #endif
-    imageStore(outRadiance, to, halfFromFloat(r));
-    imageStore(outNormal, to, halfFromFloat(n));
-    imageStore(outDepth, to, unorm16FromFloat(z));
+    imageStore(outRadiance, to, HALF(r));
+    imageStore(outNormal, to, HALF(n));
+    imageStore(outDepth, to, UNORM16(z));
 }

@@ -1,8 +1,8 @@
 // Reflective shadow map: reflected radiance and coverage, normal and its cosine to the light, linear depth.
 
 uniform int light;
-layout(location = 0) out uvec4 outRadiance;  // halves
-layout(location = 1) out uvec4 outNormal;
+layout(location = 0) out HALF4 outRadiance;
+layout(location = 1) out HALF4 outNormal;
 layout(location = 2) out float outDepth;
 
 void main()
@@ -14,7 +14,7 @@ void main()
 #ifdef PLANT_rsm_pi
     radiance *= kPi;
 #endif
-    outRadiance = halfFromFloat(vec4(radiance, 1.0));
-    outNormal = halfFromFloat(vec4(s.normal, nDotL));
+    outRadiance = HALF(vec4(radiance, 1.0));
+    outNormal = HALF(vec4(s.normal, nDotL));
     outDepth = clamp(projectToLight(from, s.position).depth, 0.0, 1.0);
 }
