@@ -22,6 +22,8 @@ struct LightProjection {
 };
 
 /// Spot: field of view = 2 x outer cone angle. Cube face: 90 degrees. Directional: orthographic square fitted to the bounds, snapped to whole texels.
+/// Widths, depths and the centre's lattice keep kFitMaxError for scenes of some metres.
+inline constexpr float kFitMaxError = 1e-6f;
 LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution);
 
 struct LightSpacePoint {

@@ -4,6 +4,7 @@
 #include "validation/equations/check_run.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace lrsm {
 namespace {
@@ -39,6 +40,27 @@ const std::vector<Group>& groups()
 bool EquationReport::holds() const
 {
     return !checks.empty() && std::all_of(checks.begin(), checks.end(), [](const EquationCheck& check) { return check.holds(); });
+}
+
+std::string equationsMarkdown(const EquationReport& report)
+{
+    const auto number = [](double value) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.2g", value);
+        return std::string(text);
+    };
+    // A | inside a cell must be escaped.
+    const auto cell = [](std::string text) {
+        for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+        return text;
+    };
+    std::string table = "| equation | function | oracle | domain | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const EquationCheck& check : report.checks) {
+        const bool exact = check.boundName == "exact";
+        table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.oracle) + " | " + cell(check.domain) + " | " + cell(check.errorKind) + " | " +
+                 (exact ? "exact" : "`" + check.boundName + "`") + " | " + (exact ? "0" : number(check.bound)) + " | " + number(check.worst) + " |\n";
+    }
+    return table;
 }
 
 std::vector<std::string> equationNames()

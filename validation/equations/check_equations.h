@@ -64,6 +64,10 @@ struct EquationOptions {
     std::function<void(const std::string&, double)> progress;
 };
 
+/// The checks as the table of docs/equations.md: equation, function, oracle, domain, constant, bound, measured. A test holds all columns but the last
+/// against the page.
+std::string equationsMarkdown(const EquationReport& report);
+
 /// Names that EquationOptions::equation takes, in the report's order.
 std::vector<std::string> equationNames();
 

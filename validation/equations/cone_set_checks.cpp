@@ -52,6 +52,7 @@ void checkAll(CheckRun& run)
             const double half = slab ? std::acos(1.0 - (std::cos(angle) - std::cos(outer)) / ring.count)
                                      : rings == 1.0 ? (ring.count == 1 ? kPiDouble / 3 : kPiDouble / 4) : h;
             error = std::max(error, 0.1 * std::abs(double(ring.tanHalf) / std::tan(std::min(half, 1.4)) - 1.0));
+            if (slab) error = std::max(error, 0.1 * std::abs(double(ring.axisAngle) - 0.5 * (angle + outer)));
             if (!slab) error = std::max(error, std::abs(double(ring.axisAngle) - (rings == 1.0 ? (ring.count == 1 ? 0.0 : kPiDouble / 4) : 2 * index * h)));
             total += ring.count * double(ring.weight);
             placed += ring.count;
@@ -59,7 +60,7 @@ void checkAll(CheckRun& run)
         }
         if (placed != settings.count) return 1.0;
         return std::max(error, 0.1 * std::abs(total - 1.0));
-    }, std::max<std::uint64_t>(1, 40 / run.draws(40)));
+    });
     run.add({.equation = "fig7", .function = "makeConeSet, rings of any count", .oracle = "integral of the cosine over each ring", .domain = "1 .. 256 cones, both estimators, all rotations",
              .boundName = "kConeSetMaxError", .errorKind = "absolute weight; tenth of angles and sums", .bound = double(kConeSetMaxError)},
             worst, "count = " + std::to_string(1 + static_cast<int>(worst.input[0]) % 256) + ", case " + std::to_string(static_cast<int>(worst.input[0]) / 256));
@@ -89,6 +90,35 @@ void checkAll(CheckRun& run)
             strata, "count = " + std::to_string(1 + static_cast<int>(strata.input[0])));
 }
 
+/// How many cones a ring holds: by solid angle, rounded cumulatively; and which of the 16 sets a pixel takes: the 4x4 ordered-dither matrix.
+void checkCounts(CheckRun& run)
+{
+    const auto counts = exhaust(256, [](std::uint64_t i) {
+        const int count = 1 + static_cast<int>(i);
+        if (count <= 4) return ringCounts(count) == std::vector<int>{count} ? 0.0 : 1.0;
+        const int rings = std::max(2, static_cast<int>(std::floor(kPiDouble / 2 / std::sqrt(2 * kPiDouble / count) + 0.5)));
+        const double h = kPiDouble / 2 / (2 * rings - 1);
+        std::vector<int> expected = {1};
+        for (int ring = 1, placed = 1; ring < rings; ++ring) {
+            // Solid angle from the cap's edge to the ring's outer one, over all beyond the cap.
+            const double share = (std::cos(h) - std::cos((2 * ring + 1) * h)) / std::cos(h);
+            const int upTo = ring + 1 == rings ? count : 1 + static_cast<int>(std::floor((count - 1) * share + 0.5));
+            expected.push_back(upTo - placed);
+            placed = upTo;
+        }
+        return ringCounts(count) == expected ? 0.0 : 1.0;
+    });
+    run.add({.equation = "fig7", .function = "ringCounts", .oracle = "shares of solid angle in double", .domain = "1 .. 256 cones", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0}, counts,
+            "count = 1 + " + exactText(counts.input[0]));
+    const auto pattern = exhaust(64, [](std::uint64_t i) {
+        constexpr int kBayer[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+        const int x = static_cast<int>(i % 8), y = static_cast<int>(i / 8);
+        return rotationOfPixel(x, y, Rotation::strata) == kBayer[y % 4][x % 4] && rotationOfPixel(x, y, Rotation::none) == 0 ? 0.0 : 1.0;
+    });
+    run.add({.equation = "fig7", .function = "rotationOfPixel", .oracle = "the 4x4 ordered-dither matrix, written out", .domain = "8x8 pixels", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+            pattern, "pixel " + exactText(pattern.input[0]));
+}
+
 void checkSpecular(CheckRun& run)
 {
     const SearchSpace<float, 1> roughness{{{{0.0f, 1.0f}}}, {{1.0f}, {0.0f}, {0.7598357f}}};
@@ -114,6 +144,7 @@ void checkConeSets(CheckRun& run)
 {
     checkSix(run);
     checkAll(run);
+    checkCounts(run);
     checkSpecular(run);
 }
 

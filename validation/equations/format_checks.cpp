@@ -65,6 +65,17 @@ void checkHalf(CheckRun& run)
     run.add({.equation = "table1", .function = "halfFromFloat, NaN and infinity", .oracle = "D3D11.3 3.2.2", .domain = "both roundings", .boundName = "exact",
              .errorKind = "wrong results", .bound = 0.0},
             special, "case " + exactText(special.input[0]));
+
+    const auto counted = exhaust(8, [](std::uint64_t i) {
+        constexpr float kValues[4] = {65504.0f, 65504.004f, 65536.0f, -65505.0f};
+        ConversionCounts counts;
+        const float stored = roundToHalf(kValues[i / 2], i % 2 ? HalfRounding::nearestEven : HalfRounding::d3d, counts);
+        if (stored != std::copysign(65504.0f, kValues[i / 2])) return 1.0;
+        return counts.halfSaturations == (i / 2 ? 1u : 0u) && counts.nans == 0 ? 0.0 : 1.0;
+    });
+    run.add({.equation = "table1", .function = "roundToHalf, saturation", .oracle = "65504, counted if finite and beyond", .domain = "65504 and its neighbour, both signs", .boundName = "exact",
+             .errorKind = "wrong results", .bound = 0.0},
+            counted, "case " + exactText(counted.input[0]));
 }
 
 /// Codes of an n-bit UNORM, and the floats beside the exact edge (k + 1/2) / (2^n - 1) between two of them.

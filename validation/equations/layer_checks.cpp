@@ -81,6 +81,20 @@ void checkPartition(CheckRun& run)
             overlaps, overlapAt);
 }
 
+/// A map of one depth still gets a range to divide by, centred on it.
+void checkFlatMap(CheckRun& run)
+{
+    const auto worst = exhaust(8, [](std::uint64_t i) {
+        const float depth = std::ldexp(1.0f, -6 - static_cast<int>(i));
+        const auto ranges = partition(syntheticRsm(4, 505, 1.0f, depth, depth), layersOf(1, 1, 0.0f));
+        const double width = double(ranges.front().depthMax) - double(ranges.front().depthMin);
+        return std::max(std::abs(width * 65536.0 - 1.0), std::abs(0.5 * (double(ranges.front().depthMax) + double(ranges.front().depthMin)) - double(depth)) * 65536.0);
+    });
+    run.add({.equation = "13", .function = "partition, a map of one depth", .oracle = "2^-16 about it", .domain = "depths 2^-6 .. 2^-13", .boundName = "exact", .errorKind = "over 2^-16",
+             .bound = 0.0},
+            worst, "depth = 2^(-6 - " + exactText(worst.input[0]) + ")");
+}
+
 /// Eq. 15 alone, on ranges and depths of any bits.
 void checkDecay(CheckRun& run)
 {
@@ -211,7 +225,7 @@ void checkMeans(CheckRun& run)
     MapWorst energy;
     std::string energyAt;
     SearchRandom random(531);
-    for (std::uint64_t draw = 0; draw < run.draws(24); ++draw) {
+    for (std::uint64_t draw = 0; draw < std::max<std::uint64_t>(3, run.draws(24)); ++draw) {
         const LayerSettings settings = layersOf(1 + static_cast<int>(draw % 5), 1 + static_cast<int>(draw % 4), draw % 3 ? 0.0f : 0.3f);
         const int resolution = draw % 2 ? 64 : 128;
         const Rsm rsm = syntheticRsm(resolution, 532 + static_cast<std::uint32_t>(draw), random.uniform(0.2f, 1.0f));
@@ -285,6 +299,7 @@ void checkStorage(CheckRun& run)
 void checkLayers(CheckRun& run)
 {
     checkPartition(run);
+    checkFlatMap(run);
     checkDecay(run);
     checkDecaySum(run);
     checkMeans(run);

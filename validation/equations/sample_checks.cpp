@@ -67,18 +67,20 @@ void checkFootprint(CheckRun& run)
         const int lod = static_cast<int>(in[2]), n = 512 >> lod;
         const float u = std::floor(in[0] * float(n) * 256.0f) / (256.0f * float(n)), v = std::floor(in[1] * float(n) * 256.0f) / (256.0f * float(n));
         double worst = footprintError(lrsm, u, v, float(lod), FilterFraction::fixed8);
-        // A third of a step aside changes nothing: the fraction is rounded to the nearest.
+        // Less than half a step aside changes nothing: the fraction is rounded to the nearest.
         const LrsmFootprint on = makeFootprint(lrsm, u, v, float(lod), FilterFraction::fixed8);
-        for (const float aside : {-0.33f, 0.33f}) {
+        for (const float aside : {-0.33f, n <= 64 ? 0.497f : 0.33f}) {
             const LrsmFootprint beside = makeFootprint(lrsm, u + aside / (256.0f * float(n)), v + aside / (256.0f * float(n)), float(lod), FilterFraction::fixed8);
             for (int tap = 0; tap < 4; ++tap) worst = std::max(worst, beside.texel[tap] != on.texel[tap] ? 1.0 : std::abs(double(on.weight[tap]) - double(beside.weight[tap])));
         }
         // The level's own fraction.
         const float level = std::floor(in[2] * 256.0f) / 256.0f;
+        const LrsmFootprint atLevel = makeFootprint(lrsm, 0.4f, 0.6f, level, FilterFraction::fixed8), nearLevel = makeFootprint(lrsm, 0.4f, 0.6f, level + 0.497f / 256.0f, FilterFraction::fixed8);
+        for (int tap = 0; tap < atLevel.taps; ++tap) worst = std::max(worst, std::abs(double(atLevel.weight[tap]) - double(nearLevel.weight[tap])));
         return std::max(worst, footprintError(lrsm, (std::floor(u * 8.0f) + 0.5f) / 8.0f, 0.5f, std::min(level, 9.0f), FilterFraction::fixed8));
     }, 408);
     run.add({.equation = "9", .function = "makeFootprint, fractions in 1/256", .oracle = "tents on the lattice of 1/256 texel, in double",
-             .domain = "lattice points of maps of 512 .. 1 texels, and a third of a step beside them", .boundName = "exact", .errorKind = "absolute, of a weight", .bound = 0.0},
+             .domain = "lattice points of maps of 512 .. 1 texels, and up to 0.497 of a step beside them", .boundName = "exact", .errorKind = "absolute, of a weight", .bound = 0.0},
             snapped, inputText<float, 3>({"u", "v", "level"}, snapped.input));
 }
 
@@ -129,7 +131,7 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
             const float sine = std::sqrt(std::max(0.0f, 1.0f - in[4] * in[4]));
             return ConeSample{Vec3(in[0], in[1], in[2]), in[3], Vec3(sine * std::cos(in[5]), sine * std::sin(in[5]), in[4])};
         };
-        const SearchSpace<float, 6> space{{{{-2.1f, 2.1f}, {-2.0f, 2.0f}, {-2.1f, 2.1f}, {0.01f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {0.0f, 6.2831853f}}}, {}};
+        const SearchSpace<float, 6> space{{{{-2.3f, 2.3f}, {-2.0f, 2.0f}, {-2.3f, 2.3f}, {0.01f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {0.0f, 6.2831853f}}}, {}};
         const auto found = findWorst(space, run.budget(20000), [&](const auto& in) {
             const ConeSample cone = coneOf(in);
             const LightSpacePoint p = projectToLight(lrsm.projection, cone.centre);
@@ -180,12 +182,38 @@ void checkProduct(CheckRun& run)
             worst, inputText<float, 3>({"height", "radius", "v.y"}, worst.input));
 }
 
+/// The map's own edge belongs to it; a hundredth of it beyond does not, nor does anything behind a spot.
+void checkMapEdges(CheckRun& run)
+{
+    Rsm rsm = syntheticRsm(32, 440, 0.0f);
+    for (RsmTexel& texel : rsm.texels.texels) texel = {Vec3(1.0f), 1.0f, Vec3(0.0f, 1.0f, 0.0f), 1.0f};
+    for (float& depth : rsm.depthLinear.texels) depth = 0.5f;
+    LayerSettings layers;
+    layers.fitRanges = false;
+    layers.depthLayers = layers.normalLayers = 1;
+    rsm.projection = sunOverCube(32);
+    const Lrsm sun = buildLrsm(rsm, layers);
+    rsm.projection = spotOverCube(32);
+    const Lrsm spot = buildLrsm(rsm, layers);
+    const NormalCdf phi;
+    const auto wrong = exhaust(13, [&](std::uint64_t i) {
+        if (i == 12) return sampleLrsm(spot, {spot.projection.position - 0.5f * spot.projection.forward, 9.0f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x == 0.0f ? 0.0 : 1.0;
+        const float reach = (i / 4 == 0 ? 1.0f : i / 4 == 1 ? 1.002f : 0.998f) * sun.projection.halfWidth * (i % 2 ? -1.0f : 1.0f);
+        const Vec3 centre = i / 2 % 2 ? Vec3(reach, 0.0f, 0.0f) : Vec3(0.0f, 0.0f, reach);
+        return (sampleLrsm(sun, {centre, 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x > 0.0f) == (i / 4 != 1) ? 0.0 : 1.0;
+    });
+    run.add({.equation = "5", .function = "sampleLrsm, the map's edges", .oracle = "lit on the edge and inside, 0 beyond and behind the light", .domain = "all four edges, and 1/500 to either side", .boundName = "exact",
+             .errorKind = "wrong results", .bound = 0.0},
+            wrong, "case " + exactText(wrong.input[0]));
+}
+
 }  // namespace
 
 void checkSample(CheckRun& run)
 {
     checkFootprint(run);
     checkProduct(run);
+    checkMapEdges(run);
     checkAlgorithm1(run, "14", LayerSelection::touched, "sampleLrsm, every layer touched");
     checkAlgorithm1(run, "15", LayerSelection::centre, "sampleLrsm, layers that hold z_c");
 }

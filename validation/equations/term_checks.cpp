@@ -139,6 +139,43 @@ void checkProjection(CheckRun& run)
     }
 }
 
+/// Where the maps lie: the scene's box fits, one texel to spare, the centre on whole texels; depths span the box.
+void checkFit(CheckRun& run)
+{
+    SearchRandom random(450);
+    const auto worst = exhaust(run.draws(300), [&](std::uint64_t) {
+        Aabb box;
+        const float x = random.uniform(-5.0f, 5.0f), y = random.uniform(-5.0f, 5.0f), z = random.uniform(-5.0f, 5.0f);
+        box.include(Vec3(x, y, z));
+        box.include(Vec3(x, y, z) + Vec3(random.uniform(1.0f, 9.0f), random.uniform(1.0f, 9.0f), random.uniform(1.0f, 9.0f)));
+        Light light;
+        light.type = LightType::directional;
+        light.direction = Vec3(0.0f, -1.0f, 0.0f);
+        light.up = Vec3(0.0f, 0.0f, 1.0f);
+        const int n = 64;
+        const LightProjection sun = fitLightProjection(light, box, n);
+        const double width = std::max(double(box.max.x) - double(box.min.x), double(box.max.z) - double(box.min.z)), texel = width / (n - 1);
+        double error = std::abs(double(sun.halfWidth) / (0.5 * texel * n) - 1.0);
+        const double middle[2] = {0.5 * (double(box.min.x) + double(box.max.x)), 0.5 * (double(box.min.z) + double(box.max.z))};
+        const double at[2] = {double(sun.position.x), double(sun.position.z)};
+        for (int k = 0; k < 2; ++k) error = std::max({error, std::abs(at[k] / texel - std::round(at[k] / texel)) * 0.1, std::abs(at[k] - middle[k]) > 0.501 * texel ? 1.0 : 0.0});
+        error = std::max({error, std::abs(double(sun.position.y) - double(box.max.y)), std::abs(double(sun.depthNear)), std::abs(double(sun.depthFar) - (double(box.max.y) - double(box.min.y)))});
+
+        light.type = LightType::spot;
+        light.position = box.max + Vec3(1.0f, 2.0f, 0.5f);
+        light.outerConeAngle = random.uniform(0.2f, 1.2f);
+        const LightProjection spot = fitLightProjection(light, box, n);
+        const glm::dvec3 near = glm::dvec3(box.max) - glm::dvec3(light.position), far = glm::dvec3(box.min) - glm::dvec3(light.position);
+        error = std::max({error, std::abs(double(spot.halfWidth) / std::tan(double(light.outerConeAngle)) - 1.0), std::abs(double(spot.depthNear) / glm::length(near) - 1.0),
+                          std::abs(double(spot.depthFar) / glm::length(far) - 1.0)});
+        light.type = LightType::cubeFace;
+        return fitLightProjection(light, box, n).halfWidth == 1.0f ? error : 1.0;
+    });
+    run.add({.equation = "sec5", .function = "fitLightProjection", .oracle = "the box in double", .domain = "boxes of 1 .. 9 m, sun, spot, cube face", .boundName = "kFitMaxError",
+             .errorKind = "relative; metres; tenth of a texel", .bound = double(kFitMaxError)},
+            worst, "draw " + exactText(worst.input[0]));
+}
+
 }  // namespace
 
 void checkTerms(CheckRun& run)
@@ -147,6 +184,7 @@ void checkTerms(CheckRun& run)
     checkMoments(run);
     checkLevel(run);
     checkProjection(run);
+    checkFit(run);
 }
 
 }  // namespace lrsm

@@ -77,11 +77,11 @@ void checkLevels(CheckRun& run)
     for (const OpacityAxes axes : {OpacityAxes::isotropic, OpacityAxes::directional})
         for (const Storage storage : {Storage::gpu, Storage::float32})
             for (const MipFilter filter : {MipFilter::mean, MipFilter::coverage, MipFilter::max})
-                for (const double density : {0.003, 0.1, 0.6, 1.0}) {
-                    const OpacityPyramid pyramid = pyramidOf(32, density, axes, storage, filter, 801);
+                for (const auto& [edge, density] : {std::pair(32, 0.003), {32, 0.1}, {32, 0.6}, {32, 1.0}, {2, 0.5}, {4, 0.3}, {8, 0.2}, {64, 0.002}}) {
+                    const OpacityPyramid pyramid = pyramidOf(edge, density, axes, storage, filter, 801);
                     std::vector<IVec3> bad;
                     for (int level = 1; level < pyramid.levels(); ++level) {
-                        const int n = 32 >> level;
+                        const int n = edge >> level;
                         const auto found = exhaust(std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(pyramid.channels()), [&](std::uint64_t i) {
                             const int c = pyramid.channels(), axis = static_cast<int>(i) % c, j = static_cast<int>(i) / c;
                             const IVec3 p(j % n, j / n % n, j / n / n);
@@ -93,7 +93,7 @@ void checkLevels(CheckRun& run)
                         wrong.include(found);
                     }
                 }
-    run.add({.equation = "sec3", .function = "buildPyramid", .oracle = "columns counted, means in double", .domain = "32^3, density 0.003 .. 1, both axes, storages, all filters",
+    run.add({.equation = "sec3", .function = "buildPyramid", .oracle = "columns counted, means in double", .domain = "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters",
              .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
             wrong, at);
     const auto scales = exhaust(6, [](std::uint64_t i) {
@@ -158,7 +158,7 @@ void checkLookup(CheckRun& run)
              .boundName = "kOpacityLookupMaxError", .errorKind = "absolute", .bound = double(kOpacityLookupMaxError), .nanoseconds = nanoseconds},
             worst, at);
 
-    // Fractions in 1/256: a third of a step beside a lattice point is that point; on it the exact lookup is the answer.
+    // Fractions in 1/256: less than half a step beside a lattice point is that point; on it the exact lookup is the answer.
     const OpacityPyramid pyramid = pyramidOf(32, 0.2, OpacityAxes::directional, Storage::gpu, MipFilter::mean, 811);
     const SearchSpace<float, 4> inside{{{{0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 5.0f}}}, {}};
     const auto snapped = findWorst(inside, run.budget(15000), [&](const std::array<float, 4>& in) {
@@ -167,13 +167,13 @@ void checkLookup(CheckRun& run)
         Vec3 p;
         for (int i = 0; i < 3; ++i) p[i] = std::floor(in[std::size_t(i)] / step) * step;
         const Vec3 on = sampleOpacity(pyramid, p, float(level), FilterFraction::fixed8), exact = sampleOpacity(pyramid, p, float(level), FilterFraction::exact);
-        const Vec3 beside = sampleOpacity(pyramid, p + Vec3(0.33f, -0.33f, 0.33f) * step, float(level), FilterFraction::fixed8);
+        const Vec3 beside = sampleOpacity(pyramid, p + Vec3(0.497f, -0.33f, 0.497f) * step, float(level), FilterFraction::fixed8);
         const float lod = std::floor(in[3] * 256.0f) / 256.0f;
         const Vec3 texel(std::ldexp(16.5f, 0), 16.5f, 16.5f);
-        const bool levels = sampleOpacity(pyramid, texel, std::min(lod + 0.0012f, 5.0f), FilterFraction::fixed8) == sampleOpacity(pyramid, texel, std::min(lod, 5.0f), FilterFraction::fixed8);
+        const bool levels = sampleOpacity(pyramid, texel, std::min(lod + 0.497f / 256.0f, 5.0f), FilterFraction::fixed8) == sampleOpacity(pyramid, texel, std::min(lod, 5.0f), FilterFraction::fixed8);
         return on == exact && on == beside && levels ? 0.0 : 1.0;
     }, 813);
-    run.add({.equation = "sec3", .function = "sampleOpacity, fractions in 1/256", .oracle = "the exact lookup at the nearest lattice point", .domain = "lattice points of every level, and a third of a step beside them",
+    run.add({.equation = "sec3", .function = "sampleOpacity, fractions in 1/256", .oracle = "the exact lookup at the nearest lattice point", .domain = "lattice points of every level, and up to 0.497 of a step beside them",
              .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
             snapped, inputText<float, 4>({"x", "y", "z", "level"}, snapped.input));
 }
