@@ -22,7 +22,7 @@ TEST_CASE("schedule: slab segments tile the cone from its apex, without gap or o
         if (i > 0) REQUIRE(s.begin == schedule.steps[i - 1].end);
         REQUIRE(s.middle == Approx(0.5f * (s.begin + s.end)));
         REQUIRE(s.diameter == Approx(std::max(settings.minDiameterVoxels, 2 * s.middle * tanHalf)));
-        REQUIRE(double(s.level) == Approx(std::max(0.0, std::log2(double(s.diameter)) + double(settings.voxelLevelBias))).margin(1e-5));
+        REQUIRE(double(s.level) == Approx(std::max(0.0, std::log2(double(s.diameter)) + double(settings.voxelLevelBias))).margin(double(kVoxelLevelMaxError)));
         REQUIRE(double(s.tapWidth) == Approx(std::exp2(double(s.level))));
     }
 }

@@ -64,7 +64,7 @@ TEST_CASE("decay weights of all layers sum to 1 at every depth of the scene", "[
     for (const float z : depths) {
         if (!(z >= lowest && z <= highest)) continue;
         CAPTURE(z);
-        REQUIRE(std::abs(decaySum(ranges, z) - 1.0) <= 4e-7);
+        REQUIRE(std::abs(decaySum(ranges, z) - 1.0) <= double(kDecaySumMaxError));
     }
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("decay is smoothstep over the overlap and 0 outside the range", "[lrsm
         const double z = i / 128.0;
         const auto k = [](double t) { return t <= 0.0 ? 0.0 : t >= 1.0 ? 1.0 : t * t * (3.0 - 2.0 * t); };
         const double expected = z < 0.375 ? k((z - 0.25) / 0.125) : z <= 0.625 ? 1.0 : k((0.75 - z) / 0.125);
-        CHECK(static_cast<double>(decay(range, static_cast<float>(z))) == Approx(expected).margin(1e-7));
+        CHECK(static_cast<double>(decay(range, static_cast<float>(z))) == Approx(expected).margin(double(kDecayMaxError)));
     }
     range.decayAtMax = false;
     CHECK(decay(range, 0.75f) == 1.0f);

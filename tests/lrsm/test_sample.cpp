@@ -243,7 +243,7 @@ TEST_CASE("the normal term divides by alpha alone and culls back faces", "[lrsm]
         const Vec3 v = unitVector(random);
         double expected = 0.0;
         for (int c = 0; c < 3; ++c) expected += double(texel.normal[c]) / texel.normalAlpha * double(v[c]);
-        REQUIRE(double(normalTerm(texel, v)) == Approx(std::max(0.0, expected)).margin(3e-7));
+        REQUIRE(double(normalTerm(texel, v)) == Approx(std::max(0.0, expected)).margin(double(kNormalTermMaxError)));
     }
     FilteredTexel empty;
     empty.normal = Vec3(0.0f, 1.0f, 0.0f);
