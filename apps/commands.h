@@ -13,6 +13,7 @@ struct Command {
 };
 
 Command addCapture(CLI::App& program);
+Command addCheck(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addMerge(CLI::App& program);

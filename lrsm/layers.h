@@ -66,6 +66,13 @@ std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings)
 inline constexpr float kRadianceMeanMaxError = 1e-7f, kLayerNormalMaxError = 1.2e-7f, kLayerDepthMaxError = 2.5e-7f, kLayerSumMaxError = 1.2e-7f;
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings);
 
+/// The same with ranges that are given instead of being fitted to this RSM: all of `partition`, of which those with a true `keep` are stored.
+/// For checking another program's LRSM, which goes by the ranges it was told.
+Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& ranges, const std::vector<bool>& keep);
+
+/// Makes `level` (>= 1) of all layers anew from the level below as it is stored.
+void filterLevel(Lrsm& lrsm, int level, const LayerSettings& settings);
+
 /// Linear depth -> the layer's own [0, 1], in which its z and z^2 are stored. Widths (radii) scale by 1 / (depthMax - depthMin).
 inline float warpDepth(const LayerRange& range, float z)
 {

@@ -5,7 +5,9 @@
 #include "lrsm/layers.h"
 #include "lrsm/sample.h"
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace lrsm {
 namespace {
@@ -150,6 +152,7 @@ class Prefilter {
                 for (int before = 0; before < i; ++before) done = done || holds(before, layer);
                 if (done) continue;
                 const int kept = keptIndex_[static_cast<std::size_t>(layer)];
+                if (kept == kNotKept) continue;
                 WideTexel wide[4];
                 for (int j = i; j < 4; ++j)
                     if (holds(j, layer)) wide[j] = texelOf(index[j], lrsm_.ranges[static_cast<std::size_t>(kept)]);
@@ -233,6 +236,27 @@ void fillLevels(const Prefilter& prefilter, Lrsm& lrsm)
     }
 }
 
+Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& all, const std::vector<bool>& keep,
+               const Classifier& layersOf, const std::vector<std::uint64_t>& counts)
+{
+    Lrsm lrsm;
+    lrsm.projection = rsm.projection;
+    lrsm.baseResolution = rsm.texels.width / 2;
+    lrsm.layersAsked = static_cast<int>(all.size());
+    std::vector<int> keptIndex(all.size(), kNotKept);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!keep[i]) continue;
+        keptIndex[i] = lrsm.layers();
+        lrsm.ranges.push_back(all[i]);
+        lrsm.validTexelsPerLayer.push_back(counts[i]);
+    }
+    lrsm.texelsPerLayer = layOutLevels(lrsm.baseResolution, lrsm.levelOffset);
+    requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map", "lower rsm_resolution or the number of layers");
+    lrsm.texels.resize(lrsm.ranges.size() * lrsm.texelsPerLayer);
+    fillLevels(Prefilter(rsm, settings, layersOf, keptIndex, lrsm), lrsm);
+    return lrsm;
+}
+
 }  // namespace
 
 std::size_t predictLayerBytes(int rsmResolution)
@@ -247,23 +271,32 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
     const std::vector<LayerRange> all = partition(rsm, settings);
     const Classifier layersOf(all, std::max(settings.normalLayers, 1));
     const std::vector<std::uint64_t> counts = countTexels(rsm, layersOf, all.size());
+    std::vector<bool> keep;
+    for (const std::uint64_t count : counts) keep.push_back(!settings.dropEmpty || count > 0);
+    return buildLrsm(rsm, settings, all, keep, layersOf, counts);
+}
 
-    Lrsm lrsm;
-    lrsm.projection = rsm.projection;
-    lrsm.baseResolution = rsm.texels.width / 2;
-    lrsm.layersAsked = static_cast<int>(all.size());
-    std::vector<int> keptIndex(all.size(), kNotKept);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (settings.dropEmpty && counts[i] == 0) continue;
-        keptIndex[i] = lrsm.layers();
-        lrsm.ranges.push_back(all[i]);
-        lrsm.validTexelsPerLayer.push_back(counts[i]);
+Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& ranges, const std::vector<bool>& keep)
+{
+    assert(ranges.size() == keep.size());
+    const Classifier layersOf(ranges, std::max(settings.normalLayers, 1));
+    return buildLrsm(rsm, settings, ranges, keep, layersOf, countTexels(rsm, layersOf, ranges.size()));
+}
+
+void filterLevel(Lrsm& lrsm, int level, const LayerSettings& settings)
+{
+    assert(level >= 1 && level < lrsm.levels());
+    const auto resolution = static_cast<std::size_t>(lrsm.resolutionAt(level));
+    for (int layer = 0; layer < lrsm.layers(); ++layer) {
+        LrsmTexel* texels = lrsm.texels.data() + static_cast<std::size_t>(layer) * lrsm.texelsPerLayer + lrsm.levelOffset[static_cast<std::size_t>(level)];
+        std::fill(texels, texels + resolution * resolution, LrsmTexel{});
     }
-    lrsm.texelsPerLayer = layOutLevels(lrsm.baseResolution, lrsm.levelOffset);
-    requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map", "lower rsm_resolution or the number of layers");
-    lrsm.texels.resize(lrsm.ranges.size() * lrsm.texelsPerLayer);
-    fillLevels(Prefilter(rsm, settings, layersOf, keptIndex, lrsm), lrsm);
-    return lrsm;
+    const Rsm none;
+    const Classifier noLayers({}, 1);
+    const std::vector<int> noIndex;
+    const Prefilter prefilter(none, settings, noLayers, noIndex, lrsm);
+    Tally tally;
+    for (int layer = 0; layer < lrsm.layers(); ++layer) prefilter.mipSquare(layer, level, 0, 0, lrsm.resolutionAt(level), tally);
 }
 
 }  // namespace lrsm
