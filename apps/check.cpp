@@ -21,7 +21,7 @@ namespace {
 struct CheckArguments : CommonOptions {
     std::string golden, candidate, output, map, junit, reason;
     std::vector<std::string> only;
-    bool fromGolden = false, noHints = false, bless = false;
+    bool fromGolden = false, exact = false, noHints = false, bless = false;
 };
 
 void refuseMixtures(const CheckArguments& options)
@@ -93,7 +93,8 @@ int runCheck(const CheckArguments& options)
 
     Progress progress(options.quiet);
     progress.show("reading", 0.0);
-    const Capture golden = readCapture(options.golden);
+    Capture golden = readCapture(options.golden);
+    if (options.exact) demandBits(golden);
     CheckOptions chosen;
     chosen.fromGolden = options.fromGolden;
     chosen.passes = passNames(options.only);
@@ -133,6 +134,7 @@ Command addCheck(CLI::App& program)
     parser->add_option("-o,--output", options->output, "folder for report.html, check.json, and expected, actual and difference of what is wrong");
     parser->add_option("--map", options->map, "JSON that says where the candidate's buffers are, and how they are stored");
     parser->add_flag("--from-golden", options->fromGolden, "judge each pass by what ours makes of the candidate's own inputs");
+    parser->add_flag("--exact", options->exact, "every buffer must have the golden's very bits, whatever its tolerance: for captures by this program");
     parser->add_option("--only", options->only, "passes to compare: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")->delimiter(',')->allow_extra_args(false);
     parser->add_option("--junit", options->junit, "file for a JUnit report");
     parser->add_flag("--no-hints", options->noHints, "compare only: do not look for what the error may be");

@@ -108,12 +108,14 @@ class CandidateReader {
         return fromExr(golden);
     }
 
-    /// Files that could hold buffers, and of which none was one.
+    /// Files that could hold buffers and are of none; a capture's DDS files repeat its .npy.
     std::vector<std::string> unused() const
     {
         std::vector<std::string> names;
         for (const std::string& file : files_) {
             const std::string extension = fs::path(file).extension().string();
+            const bool repeats = std::any_of(golden_.buffers.begin(), golden_.buffers.end(), [&](const Buffer& b) { return b.dds && b.dds->file == file; });
+            if (repeats) continue;
             if ((extension == ".npy" || extension == ".dds" || extension == ".bin" || extension == ".raw") && !used_.contains(file)) names.push_back(file);
         }
         return names;

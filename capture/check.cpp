@@ -188,6 +188,11 @@ std::string CheckReport::summary() const
     return text;
 }
 
+void demandBits(Capture& golden)
+{
+    for (Buffer& buffer : golden.buffers) buffer.tolerance = {Tolerance::Kind::exact, 0.0, 0.0, 0.0, 1.0, "--exact"};
+}
+
 CheckReport checkCandidate(const Capture& golden, const Candidate& candidate, const CheckOptions& options)
 {
     refuseUnknownPasses(golden, options.passes);

@@ -51,6 +51,9 @@ struct CheckReport {
     std::string summary() const;
 };
 
+/// Makes every tolerance "exact": for candidates that this very program made, on another machine or with another compiler.
+void demandBits(Capture& golden);
+
 /// Both must outlive the report. InputError for an unknown pass in `passes`, and when there is no buffer in common.
 CheckReport checkCandidate(const Capture& golden, const Candidate& candidate, const CheckOptions& options = {});
 

@@ -65,7 +65,7 @@ struct Signs {
 std::string valueText(const Signs& s, const Buffer& buffer)
 {
     const auto all = [&](std::size_t n) { return n == s.total; };
-    if (all(s.notANumber)) return "the candidate or the golden is NaN in all of them";
+    if (all(s.notANumber)) return "a NaN in all of them";
     if (all(s.candidateZero)) return "the candidate is 0 in all of them";
     if (all(s.goldenZero)) return "0 is expected in all of them";
     const bool ulp = buffer.tolerance.kind == Tolerance::Kind::ulp;
