@@ -24,7 +24,7 @@ double floatOrdinal(double x, int mantissaBits, int minExponent)
     const double a = std::abs(x);
     double ordinal = 0.0;
     if (std::isinf(a)) {
-        ordinal = std::ldexp(double(2 * (1 - minExponent)), mantissaBits);  // one beyond the largest finite value
+        ordinal = std::ldexp(double(2 * (1 - minExponent) + 1), mantissaBits);  // one beyond the largest finite value
     } else if (a < std::ldexp(1.0, minExponent)) {
         ordinal = std::ldexp(a, mantissaBits - minExponent);
     } else {

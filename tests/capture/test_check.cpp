@@ -113,7 +113,7 @@ bool hinted(const CheckReport& report, const std::string& part)
 Buffer numbers(std::vector<float> values, const Tolerance& tolerance)
 {
     Buffer b;
-    b.name = "x";
+    b.name = std::string("x");
     b.shape = {values.size()};
     b.axes = {"entry"};
     b.tolerance = tolerance;
@@ -501,10 +501,10 @@ TEST_CASE("hints: nothing is said of noise, and what wrong elements share is tru
     CHECK_FALSE(noise.holds());
     CHECK(firstHint(noise).empty());
     const CheckReport block = plantIn("direct.radiance", [&](Buffer& b) {
-        for (std::size_t row = 8; row < 16; ++row)
+        for (std::size_t row = 12; row < 16; ++row)
             for (std::size_t column = 0; column < b.shape[1]; ++column) floatsOf(b)[(row * b.shape[1] + column) * 3 + 1] = 0.0f;
     });
-    CHECK(says(block.firstWrong()->where, "rows 8-15"));
+    CHECK(says(block.firstWrong()->where, "rows 12-15"));
     CHECK(says(block.firstWrong()->where, "component 'g'"));
     CHECK(says(block.firstWrong()->where, "the candidate is 0 in all of them"));
 }
