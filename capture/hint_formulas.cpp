@@ -35,9 +35,8 @@ void suspectLrsm(HintTrial& trial)
 {
     const Buffer& b = trial.expected();
     const std::size_t perLayer = b.shape.empty() || b.shape[0] == 0 ? 1 : b.elements() / b.shape[0];
-    const Buffer* depth = b.name.find(".depth.") != std::string::npos ? &b : sibling(trial, replaced(replaced(b.name, ".radiance.", ".depth."), ".normal.", ".depth."));
-    if (b.name.find(".normal.") != std::string::npos) depth = sibling(trial, replaced(b.name, ".normal.", ".depth."));
-    if (b.name.find(".radiance.") != std::string::npos) depth = sibling(trial, replaced(b.name, ".radiance.", ".depth."));
+    const bool radiance = b.name.find(".radiance.") != std::string::npos;
+    const Buffer* depth = b.name.find(".depth.") != std::string::npos ? &b : sibling(trial, replaced(b.name, radiance ? ".radiance." : ".normal.", ".depth."));
     if (!depth) return;
     const auto alphaAt = [&](std::size_t i) { return decodedValue(*depth, i - i % 4 + 2); };
     const bool isDepth = depth == &b, isNormal = b.name.find(".normal.") != std::string::npos;
@@ -74,6 +73,40 @@ void suspectLrsm(HintTrial& trial)
     trial.suspect("depths run backwards in the layer's range: 1 - z", [&](std::size_t i) {
         const double z = decodedValue(b, i - i % 4), z2 = decodedValue(b, i - i % 4 + 1), alpha = alphaAt(i);
         return i % 4 == 0 ? alpha - z : i % 4 == 1 ? alpha - 2.0 * z + z2 : trial.expectedAt(i);
+    });
+}
+
+/// Texels in layers that are not theirs. What a layer holds is a sum over its texels: radiance, normal and alpha of several layers add up.
+void suspectLayers(HintTrial& trial)
+{
+    const Buffer& b = trial.expected();
+    const std::vector<LayerRange> ranges = rangesOf(trial);
+    if (b.shape.size() != 4 || ranges.size() != b.shape[0] || ranges.size() < 2) return;
+    const bool isDepth = b.name.find(".depth.") != std::string::npos;
+    const std::size_t perLayer = b.elements() / b.shape[0];
+    const auto adds = [&](std::size_t i) { return !isDepth || i % 4 == 2; };
+    const auto sumOver = [&](std::size_t i, auto&& joins) {
+        double sum = 0.0;
+        for (std::size_t layer = 0; layer < ranges.size(); ++layer)
+            if (joins(ranges[layer], ranges[i / perLayer])) sum += trial.expectedAt(layer * perLayer + i % perLayer);
+        return sum;
+    };
+    trial.suspect("texels of all depth slices are in every layer", [&](std::size_t i) {
+        return adds(i) ? sumOver(i, [](const LayerRange& a, const LayerRange& own) { return a.nDotLMin == own.nDotLMin; }) : trial.candidateAt(i);
+    });
+    trial.suspect("texels of all <n.l> slices are in every layer", [&](std::size_t i) {
+        return adds(i) ? sumOver(i, [](const LayerRange& a, const LayerRange& own) { return a.depthMin == own.depthMin; }) : trial.candidateAt(i);
+    });
+    if (isDepth) return;
+    constexpr double kRounding = 0x1p-9;  // of a half, times the layers
+    trial.suspect("texels went to other layers: summed over the layers nothing is missing (which side do a layer's ends belong to?)", [&](std::size_t i) {
+        double expected = 0.0, candidate = 0.0, size = 0.0;
+        for (std::size_t layer = 0; layer < ranges.size(); ++layer) {
+            expected += trial.expectedAt(layer * perLayer + i % perLayer);
+            candidate += trial.candidateAt(layer * perLayer + i % perLayer);
+            size += std::abs(trial.expectedAt(layer * perLayer + i % perLayer));
+        }
+        return std::abs(expected - candidate) <= kRounding * size ? trial.candidateAt(i) : trial.expectedAt(i);
     });
 }
 
@@ -151,6 +184,89 @@ void suspectShading(HintTrial& trial)
         if (parts[twice]) trial.suspect(std::string(names[twice]) + " is in the sum twice", [&](std::size_t i) { return trial.expectedAt(i) + decodedValue(*parts[twice], i); });
 }
 
+/// The irradiance filter with one of its rules left out.
+void suspectFilter(HintTrial& trial)
+{
+    const Capture& in = trial.inputs();
+    const Buffer* irradiance = sibling(trial, "cones.irradiance");
+    const Buffer *position = sibling(trial, "gbuffer.position"), *normal = sibling(trial, "gbuffer.normal"), *geometric = sibling(trial, "gbuffer.geometric_normal"),
+                 *ids = sibling(trial, "gbuffer.object_id");
+    if (!irradiance || !position || !normal || !geometric || !ids) return;
+    struct Rules {
+        const char* text;
+        bool halfEdges, normals, planes;
+        int low, high;
+        double divisor = 0.0;  ///< 0: the sum of the weights
+    };
+    constexpr float kCosine = 0.9f, kSlope = 0.1f;  // irradiance_filter.cpp
+    for (const Rules& rules : {Rules{"outer rows and columns count whole, not half", false, true, true, -2, 2}, Rules{"neighbours' normals are not compared", true, false, true, -2, 2},
+                               Rules{"neighbours' distance from the plane is not compared", true, true, false, -2, 2},
+                               Rules{"neighbours are not compared: all covered pixels count", true, false, false, -2, 2},
+                               Rules{"a box of 3x3 pixels, not 5x5 with half edges", false, true, true, -1, 1}, Rules{"a box of 4x4 pixels, not centred", false, true, true, -2, 1},
+                               Rules{"a box of 4x4 pixels, not centred", false, true, true, -1, 2},
+                               Rules{"divided by all weights (16), not by those of the neighbours that count", true, true, true, -2, 2, 16.0},
+                               Rules{"divided by 25, not by the weights of the neighbours that count", false, true, true, -2, 2, 25.0}}) {
+        const auto filtered = [&](std::size_t i) {
+            const auto pixel = i / 3, width = static_cast<std::size_t>(in.width);
+            if (decodedValue(*ids, pixel) == 0.0) return trial.expectedAt(i);
+            const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+            double sum = 0.0, total = 0.0;
+            for (int dy = rules.low; dy <= rules.high; ++dy)
+                for (int dx = rules.low; dx <= rules.high; ++dx) {
+                    if (x + dx < 0 || y + dy < 0 || x + dx >= in.width || y + dy >= in.height) continue;
+                    const std::size_t other = static_cast<std::size_t>(y + dy) * width + static_cast<std::size_t>(x + dx);
+                    if (decodedValue(*ids, other) == 0.0) continue;
+                    if (other != pixel && rules.normals && glm::dot(vectorAt(*normal, pixel), vectorAt(*normal, other)) < kCosine) continue;
+                    const Vec3 between = vectorAt(*position, other) - vectorAt(*position, pixel);
+                    const float limit = kSlope * glm::length(between);
+                    if (other != pixel && rules.planes &&
+                        (std::abs(glm::dot(between, vectorAt(*geometric, pixel))) > limit || std::abs(glm::dot(between, vectorAt(*geometric, other))) > limit))
+                        continue;
+                    const double weight = rules.halfEdges ? (std::abs(dx) == 2 ? 0.5 : 1.0) * (std::abs(dy) == 2 ? 0.5 : 1.0) : 1.0;
+                    sum += weight * decodedValue(*irradiance, other * 3 + i % 3);
+                    total += weight;
+                }
+            return sum / (rules.divisor > 0.0 ? rules.divisor : total);
+        };
+        trial.suspect(rules.text, filtered);
+    }
+}
+
+/// The base level, from the RSM's 2x2 block.
+void suspectBlock(HintTrial& trial)
+{
+    const Buffer& b = trial.expected();
+    if (levelOf(b.name) != 0 || b.shape.size() != 4) return;
+    const std::string map = "rsm" + std::to_string(lightOfPass(b.pass)) + ".";
+    const Buffer* coverage = sibling(trial, map + "radiance");
+    const bool radiance = b.name.find(".radiance.") != std::string::npos, normal = b.name.find(".normal.") != std::string::npos;
+    const Buffer* source = radiance ? coverage : normal ? sibling(trial, map + "normal") : nullptr;
+    if (!coverage) return;
+    const auto inBlock = [&](std::size_t i, std::size_t child) {
+        const std::size_t column = i / 4 % b.shape[2], row = i / 4 / b.shape[2] % b.shape[1];
+        return ((2 * row + (child >> 1)) * 2 * b.shape[2] + 2 * column + (child & 1)) * 4;
+    };
+    trial.suspect("divided by the number of covered texels of the 2x2 block, not by 4", [&](std::size_t i) {
+        double covered = 0.0;
+        for (std::size_t child = 0; child < 4; ++child) covered += decodedValue(*coverage, inBlock(i, child) + 3);
+        return covered > 0.0 ? trial.expectedAt(i) * 4.0 / covered : trial.expectedAt(i);
+    });
+    if (!source) return;
+    const auto isValue = [&](std::size_t i) { return i % 4 < 3; };
+    trial.suspect("texels of other layers are not left out: the mean of the whole 2x2 block", [&](std::size_t i) {
+        if (!isValue(i)) return trial.expectedAt(i);
+        double sum = 0.0;
+        for (std::size_t child = 0; child < 4; ++child) sum += decodedValue(*source, inBlock(i, child) + i % 4);
+        // Where nothing is in the layer some programs store nothing.
+        return trial.candidateAt(i) == 0.0 && trial.expectedAt(i) == 0.0 ? 0.0 : sum / 4.0;
+    });
+    for (std::size_t child = 0; child < 4; ++child)
+        trial.suspect("texel " + std::to_string(child >> 1) + std::to_string(child & 1) + " of the 2x2 block, not the mean", [&](std::size_t i) {
+            if (!isValue(i) || (trial.candidateAt(i) == 0.0 && trial.expectedAt(i) == 0.0)) return trial.expectedAt(i);
+            return decodedValue(*source, inBlock(i, child) + i % 4);
+        });
+}
+
 /// Sums of cones.
 void suspectGather(HintTrial& trial)
 {
@@ -174,6 +290,9 @@ void suspectFormulas(HintTrial& trial)
 {
     const std::string& pass = trial.expected().pass;
     if (pass.starts_with("lrsm")) suspectLrsm(trial);
+    if (pass.starts_with("lrsm")) suspectBlock(trial);
+    if (pass.starts_with("lrsm")) suspectLayers(trial);
+    if (pass == "filter") suspectFilter(trial);
     if (pass.starts_with("rsm")) suspectRsm(trial);
     if (pass == "gbuffer") suspectGBuffer(trial);
     if (pass == "direct" || pass == "composite" || pass == "cones" || pass == "filter") suspectShading(trial);

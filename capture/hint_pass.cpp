@@ -120,6 +120,7 @@ class PassSuspicions {
         changed_.settings = own;
         if (expected_.pass == "cones") tryLayers();
         if (expected_.pass == "cones") tryVoxels();
+        if (expected_.pass == "cones") tryRotations();
         if (expected_.pass == "direct") trySides();
     }
 
@@ -154,13 +155,14 @@ class PassSuspicions {
     void tryPass(const std::string& text)
     {
         const Rerun rerun = rerunPass(changed_, expected_.pass);
-        for (const Buffer& made : rerun.outputs) {
-            if (made.name != expected_.name || made.bytes.size() != expected_.bytes.size()) continue;
-            std::size_t left = 0;
-            for (std::size_t i = 0; i < trial_.count(); ++i)
-                left += chosen(i) && compared(expected_, i) && !trial_.fits(decodedValue(made, i), i) ? 1 : 0;
-            trial_.note(text, left, before_);
-        }
+        for (const Buffer& made : rerun.outputs)
+            if (made.name == expected_.name && made.bytes.size() == expected_.bytes.size()) judge(text, made);
+    }
+    void judge(const std::string& text, const Buffer& made)
+    {
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < trial_.count(); ++i) left += chosen(i) && compared(expected_, i) && !trial_.fits(decodedValue(made, i), i) ? 1 : 0;
+        trial_.note(text, left, before_);
     }
 
     /// Runs with every texel of these buffers changed, then puts them back.
@@ -256,6 +258,40 @@ class PassSuspicions {
             }
         tryPass("light " + std::to_string(light) + " is left out");
         restore(kept);
+    }
+
+    /// The picture upside down or mirrored: the pass is the same but for the rotations, which go by row and column.
+    void tryRotations()
+    {
+        tryMirrored("the rotation of a pixel's cones goes by rows counted from the bottom", true);
+        tryMirrored("the rotation of a pixel's cones goes by columns counted from the right", false);
+    }
+    void tryMirrored(const std::string& text, bool rows)
+    {
+        std::vector<Buffer> kept;
+        for (Buffer& buffer : changed_.buffers)
+            if (buffer.pass == "gbuffer") {
+                kept.push_back(buffer);
+                mirror(buffer, rows);
+            }
+        Rerun rerun = rerunPass(changed_, expected_.pass);
+        restore(kept);
+        for (Buffer& made : rerun.outputs) {
+            if (made.name != expected_.name) continue;
+            mirror(made, rows);
+            judge(text, made);
+        }
+    }
+    void mirror(Buffer& buffer, bool rows) const
+    {
+        const auto width = static_cast<std::size_t>(changed_.width), height = static_cast<std::size_t>(changed_.height);
+        const std::size_t pixel = sizeOf(buffer.dtype) * std::max<std::size_t>(buffer.components.size(), 1), slice = width * height * pixel;
+        const std::vector<std::byte> before = buffer.bytes;
+        for (std::size_t at = 0; at < before.size(); at += pixel) {
+            const std::size_t in = at % slice / pixel, x = in % width, y = in / width;
+            const std::size_t from = rows ? (height - 1 - y) * width + x : y * width + width - 1 - x;
+            std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(at / slice * slice + from * pixel), pixel, buffer.bytes.begin() + static_cast<std::ptrdiff_t>(at));
+        }
     }
 
     void tryVoxels()
