@@ -164,19 +164,20 @@ void describeLrsm(Catalogue& out, const Settings& settings, std::size_t light, i
     if (layers == 0) return;
     const std::string index = std::to_string(light), pass = "lrsm " + index, prefix = "lrsm" + index + ".";
     const bool gpu = settings.layers.storage == Storage::gpu;
-    const auto texture = [&](const std::string& name, const Names& components, const Text& text, const Tolerance& tolerance, const TexelFormat& format) {
+    const auto texture = [&](const std::string& name, const Names& components, const Text& text, const auto& tolerance, const TexelFormat& format) {
         for (int lod = 0, n = settings.rsm.resolution / 2; n >= 1; ++lod, n /= 2) {
             Buffer& buffer = out.add(prefix + name + ".mip" + std::to_string(lod), pass, format.dtype, {sz(layers), sz(n), sz(n), 4},
-                                     {"layer", "row", "column", "component"}, components, text, tolerance);
+                                     {"layer", "row", "column", "component"}, components, text, tolerance(lod));
             buffer.encoding = format.encoding;
             buffer.dds = DdsPlace{prefix + name + ".dds", static_cast<std::uint32_t>(lod), format.dds, false};
         }
     };
-    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", "W/(m^2 sr)"}, tolerances::layerHalf(gpu),
+    const auto half = [&](int) { return tolerances::layerHalf(gpu); };
+    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", "W/(m^2 sr)"}, half,
             gpu ? kHalf4 : kFloat4);
-    texture("normal", {"x", "y", "z", "alpha"}, {"normal times alpha, and alpha", kWorld, ""}, tolerances::layerHalf(gpu), gpu ? kHalf4 : kFloat4);
+    texture("normal", {"x", "y", "z", "alpha"}, {"normal times alpha, and alpha", kWorld, ""}, half, gpu ? kHalf4 : kFloat4);
     texture("depth", {"z", "z2", "alpha", ""}, {"alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), and alpha", "layer's depth", ""},
-            tolerances::layerDepth(gpu), gpu ? kUnorm4 : kFloat4);
+            [&](int lod) { return tolerances::layerDepth(gpu, lod); }, gpu ? kUnorm4 : kFloat4);
 }
 
 void describeGBuffer(Catalogue& out, int width, int height, bool specular, double diagonal)

@@ -59,10 +59,13 @@ Tolerance layerHalf(bool half)
     return ulp(1, 0.0, 0.25, "four additions in another order may cross a step of half; more than a quarter of the texels: the rounding mode differs (half_rounding)");
 }
 
-Tolerance layerDepth(bool unorm)
+Tolerance layerDepth(bool unorm, int level)
 {
     if (!unorm) return absolute(1e-6, 0.0, "the order of four additions");
-    return ulp(1, 0.0, 0.25, "D3D allows 0.6 ULP in float to UNORM: one code, where the exact value lies near the middle of two; GenerateMips likewise");
+    const std::string reason = "D3D allows 0.6 ULP in float to UNORM: one code, where the exact value lies near the middle of two; GenerateMips likewise";
+    if (level < 2) return ulp(1, 0.0, 0.25, reason);
+    // Measured with a driver's own stores (docs/twin.md): of the mips from the third on up to half differ, a few by 2.
+    return ulp(2, 0.0, 0.6, reason + "; a mip inherits what those below it are off by");
 }
 
 Tolerance length(double sceneDiagonal, int height)

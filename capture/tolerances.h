@@ -12,7 +12,7 @@ Tolerance mapRadiance(int resolution);  ///< of an RSM
 Tolerance mapNormal(int resolution);
 Tolerance mapDepth(int resolution);
 Tolerance layerHalf(bool half);
-Tolerance layerDepth(bool unorm);
+Tolerance layerDepth(bool unorm, int level);
 Tolerance length(double sceneDiagonal, int height);  ///< positions and depths of the G-buffer
 Tolerance surfaceNormal(int height);
 Tolerance surface();        ///< albedo, roughness of the G-buffer
