@@ -8,7 +8,6 @@ uint halfFromFloat(float v)
 {
     uint bits = floatBitsToUint(v), sign = (bits >> 16) & 0x8000u, magnitude = bits & 0x7fffffffu;
     if (magnitude > 0x7f800000u) return sign | 0x7e00u;  // NaN
-    if (magnitude == 0x7f800000u) return sign | 0x7c00u;
     int exponent = int(magnitude >> 23) - 127;
     if (exponent < -25) return sign;
     uint half_;
@@ -24,10 +23,7 @@ uint halfFromFloat(float v)
         if (rest > tie || (rest == tie && (half_ & 1u) != 0u)) ++half_;
 #endif
     }
-#ifndef HALF_NEAREST_EVEN
-    half_ = min(half_, 0x7bffu);  // what is beyond 65504 becomes 65504
-#endif
-    return sign | half_;
+    return sign | min(half_, 0x7bffu);  // what is beyond 65504 becomes 65504
 }
 
 uvec4 halfFromFloat(vec4 v) { return uvec4(halfFromFloat(v.x), halfFromFloat(v.y), halfFromFloat(v.z), halfFromFloat(v.w)); }

@@ -13,6 +13,7 @@ struct Light {
 layout(std430, binding = 8) readonly buffer Lights { Light lights[]; };
 
 const float kPi = 3.14159265358979323846;
+const vec3 kLargest = vec3(1e20);
 
 struct LightSpacePoint {
     vec2 uv;
@@ -59,7 +60,7 @@ struct LightSample {
 
 LightSample sampleLight(Light light, vec3 world)
 {
-    if (light.position.w == 0.0) return LightSample(-light.direction.xyz, light.intensity.rgb, 1e30);
+    if (light.position.w == 0.0) return LightSample(-light.direction.xyz, min(light.intensity.rgb, kLargest), 1e30);
     vec3 from = world - light.position.xyz;
     float distance_ = length(from);
     if (!(distance_ > 0.0)) return LightSample(-light.direction.xyz, vec3(0), 0.0);
@@ -75,5 +76,5 @@ LightSample sampleLight(Light light, vec3 world)
     } else if (cubeFaceOf(direction) != int(light.layers.w)) {
         attenuation = 0.0;
     }
-    return LightSample(-direction, light.intensity.rgb * attenuation, distance_);
+    return LightSample(-direction, min(light.intensity.rgb * attenuation, kLargest), distance_);
 }
