@@ -63,7 +63,7 @@ std::string pageOf(const std::vector<ValidationPart>& parts)
 {
     HtmlPage page{"lrsm validate", "", "", chartStyle(), chartScript()};
     for (const ValidationPart& part : parts) {
-        page.summary += (page.summary.empty() ? "" : " ") + part.verdict;
+        if (part.name != "ladder") page.summary += part.verdict + " ";  // a ladder's verdict stands at its own section
         page.bodyHtml += part.html;
     }
     return htmlPage(page);

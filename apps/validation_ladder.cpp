@@ -211,7 +211,7 @@ ValidationPart describeLadders(const std::vector<LadderScene>& scenes, Json& jso
     json = Json::array();
     for (const LadderScene& scene : scenes) {
         json.push_back(sceneLadderJson(scene));
-        part.verdict += (part.verdict.empty() ? "" : " ") + scene.verdict;
+        part.verdict += (part.verdict.empty() ? "" : "\n") + scene.verdict;
         part.text += "\nerror ladder of " + scene.scene + ", " + std::to_string(scene.samples.size()) + " cone samples\n";
         for (const NamedLadder& named : laddersOf(scene)) part.text += textTable(rungTable(named, false));
         part.html += sceneHtml(scene);
