@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 std::string shortShare(std::size_t count, std::size_t of)
 {
     char text[48];
-    std::snprintf(text, sizeof text, "%zu (%.2g %%)", count, of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0);
+    std::snprintf(text, sizeof text, "%zu (%.3g %%)", count, of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0);
     return count ? text : "0";
 }
 

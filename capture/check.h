@@ -27,9 +27,10 @@ struct CheckedBuffer {
     std::vector<std::string> hints;                ///< what the error looks like, surest first
     std::string where;                             ///< what the differing elements have in common; may be empty
 
-    /// What the verdict was made of: the golden, or the pass run anew.
-    const Buffer& expected() const { return againstRerun ? rerun : *golden; }
-    const BufferComparison& comparison() const { return againstRerun ? *againstRerun : againstGolden; }
+    /// What the verdict was made of: the pass run anew; the golden where there is no such thing, or where only the golden is matched.
+    bool judgedByRerun() const { return againstRerun && (againstRerun->holds || !againstGolden.holds); }
+    const Buffer& expected() const { return judgedByRerun() ? rerun : *golden; }
+    const BufferComparison& comparison() const { return judgedByRerun() ? *againstRerun : againstGolden; }
 };
 
 struct CheckOptions {
