@@ -127,7 +127,7 @@ DdsTexture decodeDds(std::span<const std::byte> file, const std::string& place)
 {
     const auto fail = [&](const std::string& why) -> InputError { return {place, why}; };
     std::array<std::uint32_t, kWords> words{};
-    std::memcpy(words.data(), file.data(), std::min(file.size(), sizeof words));
+    std::copy_n(file.begin(), std::min(file.size(), sizeof words), std::as_writable_bytes(std::span(words)).begin());
     if (words[magic] != kDdsMagic) throw fail("is no DDS file");
     if (words[size] != kHeaderSize || words[pixelFormatSize] != kPixelFormatSize) throw fail("is no readable DDS: its header has a wrong size");
     if (!(words[pixelFormatFlags] & kFourCC) || words[fourCC] != kDx10) throw fail("has no DX10 header; save it with one (its DXGI format is then known)");

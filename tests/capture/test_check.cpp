@@ -118,7 +118,7 @@ Buffer numbers(std::vector<float> values, const Tolerance& tolerance)
     b.axes = {"entry"};
     b.tolerance = tolerance;
     b.bytes.resize(values.size() * sizeof(float));
-    std::memcpy(b.bytes.data(), values.data(), b.bytes.size());
+    if (!values.empty()) std::memcpy(b.bytes.data(), values.data(), b.bytes.size());
     return b;
 }
 
