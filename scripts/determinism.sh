@@ -3,6 +3,7 @@
 # {g++, clang++} x {-O0, -O3} x {SSE2, AVX2, AVX-512 where the machine has it} x {1, 2, 7 threads}.
 #   scripts/determinism.sh            all of it; about ten minutes on two cores
 #   scripts/determinism.sh --quick    what CI runs beside its own builds: g++ -O0 and clang++ -O3 with the widest vectors
+#   scripts/determinism.sh 'g++-13|-O2|-march=native' ...    combinations of your own: compiler, level, further flags
 # Builds go to build/determinism/. The exit code is 1 when any combination gives other bits.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -19,6 +20,8 @@ threads_of=(1 2 7)
 if [ "${1:-}" = "--quick" ]; then
     threads_of=(7)
     combinations=("g++|-O0|" "clang++|-O3|$widest")
+elif [ $# -gt 0 ]; then
+    combinations=("$@")
 else
     for compiler in g++ clang++; do
         for level in -O0 -O3; do
@@ -35,7 +38,7 @@ for combination in "${combinations[@]}"; do
         echo "determinism: SKIPPED $compiler: not installed"
         continue
     fi
-    name=$(echo "$compiler$level${extension%% *}" | tr -c 'a-z0-9A-Z\n' '_')
+    name=$(echo "${compiler##*/}$level$extension" | tr -c 'a-z0-9A-Z+\n' '_')
     folder=build/determinism/$name
     scripts/configure.sh release -B "$folder" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="$level $extension" \
         -DLRSM_BENCHMARKS=OFF >"build/$name.log" 2>&1 &&
