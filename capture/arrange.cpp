@@ -14,7 +14,6 @@ namespace lrsm {
 namespace {
 
 constexpr std::size_t kAbsent = ~std::size_t(0);
-constexpr const char* kComponentAxis = "component";
 
 std::string shapeText(const std::vector<std::size_t>& shape)
 {

@@ -22,7 +22,7 @@ bool isMip(const std::string& name) { return name.find(".mip") != std::string::n
 /// Texel of the level below (or of any finer level) that a child offset names, for an element of this level.
 class Family {
   public:
-    Family(const Buffer& level, const Buffer& other) : level_(level), otherExtents_(extentsOf(other)), names_(axisNamesOf(level)), extents_(extentsOf(level))
+    Family(const Buffer& level, const Buffer& other) : otherExtents_(extentsOf(other)), names_(axisNamesOf(level)), extents_(extentsOf(level))
     {
         for (std::size_t axis = 0; axis < extents_.size(); ++axis) {
             const std::string& name = names_[axis];
@@ -62,7 +62,6 @@ class Family {
         return at;
     }
 
-    const Buffer& level_;
     std::vector<std::size_t> otherExtents_;
     std::vector<std::string> names_;
     std::vector<std::size_t> extents_, halved_;

@@ -10,7 +10,7 @@ namespace {
 
 enum Stream : std::uint32_t { hasUv0 = 1, hasUv1 = 2, hasTangents = 4, hasColors = 8 };
 
-constexpr std::size_t kMeshColumns = 6, kMaterialColumns = 9;
+constexpr std::size_t kMeshColumns = 6;
 
 bool textured(const Material& m) { return m.baseColorTexture || m.metallicRoughnessTexture || m.normalTexture; }
 

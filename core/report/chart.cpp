@@ -64,6 +64,9 @@ constexpr const char* kDraw = R"(
       set.borderColor = palette[i % palette.length];
       set.backgroundColor = set.borderColor + (config.type === 'bar' ? 'cc' : '88');
     });
+    // Powers of ten alone are written on a logarithmic axis, short.
+    const power = v => { const e = Math.round(Math.log10(v)); return Math.abs(Math.log10(v) - e) > 1e-9 ? '' : Math.abs(e) > 3 ? '1e' + e : String(v); };
+    for (const axis of Object.values(config.options.scales)) if (axis.type === 'logarithmic') axis.ticks = { callback: power };
     config.options.plugins.tooltip = { callbacks: { afterLabel: item => item.raw && item.raw.hover } };
     box.chart = new Chart(box.querySelector('canvas'), config);
   }
