@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "python.h"
 #include "sandbox.h"
 
 #include <filesystem>
@@ -54,11 +55,13 @@ TEST_CASE("check program: a capture against itself is 0, bytes that differ are 1
             CHECK(buffer["first_inputs"].size() == 4);
         }
     // An XML parser that knows nothing of us.
-    const std::string parse = "cd '" + box.here().string() + "' && python3 -c 'import xml.etree.ElementTree as t; r = t.parse(\"junit.xml\").getroot(); "
+    const std::optional<std::string> python = pythonWith("xml.etree.ElementTree");
+    const std::string parse = "cd '" + box.here().string() + "' && " + python.value_or("python3") + " -c 'import xml.etree.ElementTree as t; r = t.parse(\"junit.xml\").getroot(); "
                               "f = [c for c in r.iter(\"testcase\") if c.find(\"failure\") is not None]; "
                               "assert r.tag == \"testsuites\" and int(r.get(\"failures\")) == 1 and [c.get(\"name\") for c in f] == [\"lrsm0.depth.mip1\"]; "
                               "assert all(s.get(\"tests\") == str(len(s.findall(\"testcase\"))) for s in r)'";
-    if (std::system("python3 -c '' 2>/dev/null") == 0) CHECK(std::system(parse.c_str()) == 0);
+    if (!python) WARN("SKIPPED: no python3 that reads XML (Debian: python3)");
+    if (python) CHECK(std::system(parse.c_str()) == 0);
     CHECK(CheckJson::parse(box.run("check golden mine --json").out)["holds"] == false);
     CHECK(box.run("check golden mine --only composite").code == 2);
 }

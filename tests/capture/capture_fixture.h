@@ -34,4 +34,11 @@ inline Recording record(const std::string& name, const Settings& settings, Recor
     return r;
 }
 
+/// The capture that tests of candidates share: it is only read.
+inline const Capture& sharedGolden()
+{
+    static const Capture capture = record("cornell-box", smallSettings()).capture;
+    return capture;
+}
+
 }  // namespace lrsm::test

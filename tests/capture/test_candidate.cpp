@@ -18,12 +18,6 @@ using namespace lrsm::test;
 
 namespace {
 
-const Capture& sharedGolden()
-{
-    static const Capture capture = record("cornell-box", smallSettings()).capture;
-    return capture;
-}
-
 std::string_view viewOf(const std::vector<std::byte>& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 void writeNpy(const ScratchFolder& scratch, const std::string& file, Dtype dtype, const std::vector<std::size_t>& shape, const std::vector<std::byte>& bytes)

@@ -21,13 +21,6 @@ using namespace lrsm::test;
 
 namespace {
 
-/// The golden all tests share: it is only read.
-const Capture& golden()
-{
-    static const Capture capture = record("cornell-box", smallSettings()).capture;
-    return capture;
-}
-
 Buffer* bufferIn(Capture& capture, const std::string& name)
 {
     const auto found = std::find_if(capture.buffers.begin(), capture.buffers.end(), [&](const Buffer& b) { return b.name == name; });
@@ -59,10 +52,10 @@ CheckReport plantIn(const std::string& name, const Change& change)
 {
     static std::vector<Candidate> kept;  // reports point into their candidates
     kept.reserve(1024);
-    Capture copy = golden();
+    Capture copy = sharedGolden();
     change(*bufferIn(copy, name));
     kept.push_back(candidateOf(copy, [&](const Buffer& b) { return b.name == name; }));
-    return checkCandidate(golden(), kept.back());
+    return checkCandidate(sharedGolden(), kept.back());
 }
 
 std::uint16_t* codesOf(Buffer& b) { return reinterpret_cast<std::uint16_t*>(b.bytes.data()); }
@@ -225,11 +218,11 @@ TEST_CASE("comparator: values given in a wider type are measured as they are", "
 
 TEST_CASE("check: a capture against itself is all right, with and without its own inputs", "[capture][check]")
 {
-    const Candidate candidate = candidateOf(golden());
+    const Candidate candidate = candidateOf(sharedGolden());
     for (const bool fromGolden : {false, true}) {
         CheckOptions options;
         options.fromGolden = fromGolden;
-        const CheckReport report = checkCandidate(golden(), candidate, options);
+        const CheckReport report = checkCandidate(sharedGolden(), candidate, options);
         CHECK(report.holds());
         CHECK(report.count(Verdict::ok) == report.buffers.size());
         for (const CheckedBuffer& b : report.buffers) CHECK(b.comparison().differing == 0);
@@ -238,13 +231,13 @@ TEST_CASE("check: a capture against itself is all right, with and without its ow
 
 TEST_CASE("check: rerun passes give the captured bits", "[capture][check][rerun]")
 {
-    for (const CapturedPass& pass : golden().passes) {
+    for (const CapturedPass& pass : sharedGolden().passes) {
         CAPTURE(pass.name);
-        const Rerun rerun = rerunPass(golden(), pass.name);
+        const Rerun rerun = rerunPass(sharedGolden(), pass.name);
         CHECK(rerun.why.empty());
         for (const Buffer& made : rerun.outputs) {
             CAPTURE(made.name);
-            CHECK(made.bytes == golden().at(made.name).bytes);
+            CHECK(made.bytes == sharedGolden().at(made.name).bytes);
         }
     }
 }
@@ -254,7 +247,7 @@ TEST_CASE("check: one wrong element is reported at its pass, buffer and place", 
     SECTION("a code of an LRSM's mip")
     {
         const std::string name = "lrsm0.depth.mip2";
-        const Buffer& g = golden().at(name);
+        const Buffer& g = sharedGolden().at(name);
         const std::size_t at[] = {1, 3, 5, 1};
         const std::size_t element = elementAt(g, at);
         const CheckReport report = plantIn(name, [&](Buffer& b) { codesOf(b)[element] = std::uint16_t(codesOf(b)[element] ^ 0x40); });
@@ -265,7 +258,7 @@ TEST_CASE("check: one wrong element is reported at its pass, buffer and place", 
     }
     SECTION("a NaN in a picture, though outliers are allowed")
     {
-        const Buffer& g = golden().at("gbuffer.position");
+        const Buffer& g = sharedGolden().at("gbuffer.position");
         const std::size_t at[] = {4, 7, 2};
         const std::size_t element = elementAt(g, at);
         const CheckReport report = plantIn("gbuffer.position", [&](Buffer& b) { floatsOf(b)[element] = NAN; });
@@ -273,50 +266,50 @@ TEST_CASE("check: one wrong element is reported at its pass, buffer and place", 
     }
     SECTION("one voxel, when bits are demanded")
     {
-        Capture strict = golden();
+        Capture strict = sharedGolden();
         demandBits(strict);
-        Capture copy = golden();
+        Capture copy = sharedGolden();
         bufferIn(copy, "voxel.bits")->bytes[8 * 5 + 3] ^= std::byte(16);
         const Candidate candidate = candidateOf(copy, [](const Buffer& b) { return b.name == "voxel.bits"; });
         const CheckReport report = checkCandidate(strict, candidate);
-        const std::size_t rowBytes = golden().at("voxel.bits").shape[2], row = 43 / rowBytes, n = golden().at("voxel.bits").shape[1];
+        const std::size_t rowBytes = sharedGolden().at("voxel.bits").shape[2], row = 43 / rowBytes, n = sharedGolden().at("voxel.bits").shape[1];
         const std::string place = "z " + std::to_string(row / n) + ", y " + std::to_string(row % n) + ", x " + std::to_string(43 % rowBytes * 8 + 4);
         CHECK(says(report.summary(), "pass \"voxelize\", voxel.bits, " + place));
-        CHECK(checkCandidate(golden(), candidate).holds());  // within 1 % of the voxels otherwise
+        CHECK(checkCandidate(sharedGolden(), candidate).holds());  // within 1 % of the voxels otherwise
     }
 }
 
 TEST_CASE("check: the first wrong pass in the order of the data flow comes first, mip by mip", "[capture][check]")
 {
-    Capture copy = golden();
+    Capture copy = sharedGolden();
     for (const char* name : {"composite.combined", "lrsm0.normal.mip3", "lrsm0.depth.mip1", "lrsm0.radiance.mip2"})
         std::fill(bufferIn(copy, name)->bytes.begin(), bufferIn(copy, name)->bytes.end(), std::byte(0x21));
     const Candidate candidate = candidateOf(copy);
-    const CheckReport report = checkCandidate(golden(), candidate);
+    const CheckReport report = checkCandidate(sharedGolden(), candidate);
     CHECK(report.firstWrong()->golden->name == "lrsm0.depth.mip1");
     CHECK(report.count(Verdict::wrong) == 4);
 }
 
 TEST_CASE("check: buffers that are not there are no failure; none in common is bad input", "[capture][check]")
 {
-    const Candidate some = candidateOf(golden(), [](const Buffer& b) { return b.pass == "direct"; });
-    const CheckReport report = checkCandidate(golden(), some);
+    const Candidate some = candidateOf(sharedGolden(), [](const Buffer& b) { return b.pass == "direct"; });
+    const CheckReport report = checkCandidate(sharedGolden(), some);
     CHECK(report.holds());
     CHECK(report.count(Verdict::missing) > 10);
     CHECK(says(report.summary(), "not in the candidate"));
-    const Candidate none = candidateOf(golden(), [](const Buffer&) { return false; });
-    CHECK(says(errorOf([&] { (void)checkCandidate(golden(), none); }), "no buffer in common"));
+    const Candidate none = candidateOf(sharedGolden(), [](const Buffer&) { return false; });
+    CHECK(says(errorOf([&] { (void)checkCandidate(sharedGolden(), none); }), "no buffer in common"));
     CheckOptions options;
     options.passes = {"lrms"};
-    CHECK(says(errorOf([&] { (void)checkCandidate(golden(), some, options); }), "--only lrms"));
+    CHECK(says(errorOf([&] { (void)checkCandidate(sharedGolden(), some, options); }), "--only lrms"));
     options.passes = {"lrsm"};
-    CHECK(says(errorOf([&] { (void)checkCandidate(golden(), some, options); }), "no buffer in common"));
+    CHECK(says(errorOf([&] { (void)checkCandidate(sharedGolden(), some, options); }), "no buffer in common"));
 }
 
 TEST_CASE("from golden: what follows a wrong pass inherits, and a second bug is told apart", "[capture][check][rerun]")
 {
     // A pipeline whose LRSM's base level is wrong, and whose composite has an error of its own; everything between is right for its inputs.
-    Capture copy = golden();
+    Capture copy = sharedGolden();
     recompute(*bufferIn(copy, "lrsm0.radiance.mip0"), [](const Buffer& b, std::size_t i) { return 2.0 * decodedValue(b, i); });
     for (const char* pass : {"lrsm 0", "cones", "filter", "composite"}) {
         // Each mip from the level below: as often as there are levels.
@@ -331,7 +324,7 @@ TEST_CASE("from golden: what follows a wrong pass inherits, and a second bug is 
     const Candidate candidate = candidateOf(copy);
     CheckOptions options;
     options.fromGolden = true;
-    const CheckReport report = checkCandidate(golden(), candidate, options);
+    const CheckReport report = checkCandidate(sharedGolden(), candidate, options);
     CHECK(report.firstWrong()->golden->name == "lrsm0.radiance.mip0");
     CHECK(checkedIn(report, "lrsm0.radiance.mip1").verdict == Verdict::inherits);
     CHECK(checkedIn(report, "lrsm0.depth.mip1").verdict == Verdict::ok);
@@ -346,7 +339,7 @@ TEST_CASE("from golden: what follows a wrong pass inherits, and a second bug is 
 
 TEST_CASE("from golden: says what is missing where a pass cannot be run anew", "[capture][check][rerun]")
 {
-    Capture part = golden();
+    Capture part = sharedGolden();
     std::erase_if(part.buffers, [](const Buffer& b) { return b.pass == "rsm 0"; });
     const Candidate candidate = candidateOf(part);
     CheckOptions options;
@@ -375,7 +368,7 @@ TEST_CASE("hints: values in the wrong place", "[capture][hints]")
     CHECK(hinted(moved("voxel.bits", [](Index at, const Index&) { std::swap(at[0], at[2]); return at; }), "z and x are exchanged"));
     CHECK(hinted(moved("cones.diffuse", [](Index at, const Index&) { at[0] = (at[0] + 1) % 6; return at; }), "cones are in another order: 0 holds 1"));
     CHECK(hinted(plantIn("voxel.bits", [](Buffer& b) { recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i ^ 7); }); }), "bits of each byte"));
-    CHECK(hinted(plantIn("filter.irradiance", [](Buffer& b) { b.bytes = golden().at("cones.irradiance").bytes; }), "it holds cones.irradiance"));
+    CHECK(hinted(plantIn("filter.irradiance", [](Buffer& b) { b.bytes = sharedGolden().at("cones.irradiance").bytes; }), "it holds cones.irradiance"));
 }
 
 TEST_CASE("hints: values off by a formula", "[capture][hints]")
@@ -399,7 +392,7 @@ TEST_CASE("hints: values off by a formula", "[capture][hints]")
 
 TEST_CASE("hints: terms that were forgotten", "[capture][hints]")
 {
-    const auto depthAlpha = [](std::size_t i) { return decodedValue(golden().at("lrsm0.depth.mip0"), i - i % 4 + 2); };
+    const auto depthAlpha = [](std::size_t i) { return decodedValue(sharedGolden().at("lrsm0.depth.mip0"), i - i % 4 + 2); };
     CHECK(hinted(plantIn("lrsm0.radiance.mip0", [&](Buffer& b) {
                      recompute(b, [&](const Buffer& before, std::size_t i) { return depthAlpha(i) > 0.0 ? decodedValue(before, i) / depthAlpha(i) : 0.0; });
                  }), "not multiplied by alpha"));
@@ -410,7 +403,7 @@ TEST_CASE("hints: terms that were forgotten", "[capture][hints]")
                      });
                  }), "not the mean of squares"));
     CHECK(hinted(plantIn("lrsm0.depth.mip0", [&](Buffer& b) {
-                     const std::vector<LayerRange> ranges = golden().lights[0].storedRanges();
+                     const std::vector<LayerRange> ranges = sharedGolden().lights[0].storedRanges();
                      const std::size_t perLayer = b.elements() / b.shape[0];
                      recompute(b, [&](const Buffer& before, std::size_t i) {
                          const LayerRange& r = ranges[i / perLayer];
@@ -421,18 +414,18 @@ TEST_CASE("hints: terms that were forgotten", "[capture][hints]")
                  }), "not warped"));
     CHECK(hinted(plantIn("rsm0.radiance", [](Buffer& b) {
                      recompute(b, [](const Buffer& before, std::size_t i) {
-                         const double cosine = decodedValue(golden().at("rsm0.normal"), i - i % 4 + 3);
+                         const double cosine = decodedValue(sharedGolden().at("rsm0.normal"), i - i % 4 + 3);
                          return i % 4 == 3 || cosine <= 0.0 ? decodedValue(before, i) : decodedValue(before, i) / cosine;
                      });
                  }), "not multiplied by <n.l>"));
     CHECK(hinted(plantIn("composite.combined", [](Buffer& b) {
-                     recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i) - decodedValue(golden().at("direct.radiance"), i); });
+                     recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i) - decodedValue(sharedGolden().at("direct.radiance"), i); });
                  }), "direct.radiance is not in the sum"));
     CHECK(hinted(plantIn("gbuffer.depth", [](Buffer& b) {
                      recompute(b, [](const Buffer& before, std::size_t i) {
                          double square = 0.0;
                          for (int c = 0; c < 3; ++c) {
-                             const double d = decodedValue(golden().at("gbuffer.position"), i * 3 + std::size_t(c)) - double(golden().camera.position[c]);
+                             const double d = decodedValue(sharedGolden().at("gbuffer.position"), i * 3 + std::size_t(c)) - double(sharedGolden().camera.position[c]);
                              square += d * d;
                          }
                          return decodedValue(before, i) > 0.0 ? std::sqrt(square) : 0.0;
@@ -442,7 +435,7 @@ TEST_CASE("hints: terms that were forgotten", "[capture][hints]")
 
 TEST_CASE("hints: mips picked, of the wrong level, or rounded otherwise", "[capture][hints]")
 {
-    const auto mip = [](const std::string& texture, int level) -> const Buffer& { return golden().at("lrsm0." + texture + ".mip" + std::to_string(level)); };
+    const auto mip = [](const std::string& texture, int level) -> const Buffer& { return sharedGolden().at("lrsm0." + texture + ".mip" + std::to_string(level)); };
     const auto at = [](const Buffer& b, std::size_t layer, std::size_t row, std::size_t column, std::size_t c) {
         const std::size_t indices[] = {layer, row, column, c};
         return decodedValue(b, elementAt(b, indices));
@@ -465,7 +458,7 @@ TEST_CASE("hints: mips picked, of the wrong level, or rounded otherwise", "[capt
                      for (std::size_t i = 0; i < b.elements(); ++i) codesOf(b)[i] = std::uint16_t(mean(mip("depth", 0), indicesOf(b, i)) * 65535.0 + 1e-6);
                  }), "rounds toward zero (truncates)"));
     CHECK(hinted(plantIn("lrsm0.depth.mip0", [&](Buffer& b) {
-                     const std::optional<Buffer> wide = wideOutput(golden(), "lrsm0.depth.mip0");
+                     const std::optional<Buffer> wide = wideOutput(sharedGolden(), "lrsm0.depth.mip0");
                      REQUIRE(wide);
                      for (std::size_t i = 0; i < b.elements(); ++i) codesOf(b)[i] = std::uint16_t(decodedValue(*wide, i) * 65535.0 + 1e-6);
                  }), "rounds toward zero (truncates)"));
@@ -474,7 +467,7 @@ TEST_CASE("hints: mips picked, of the wrong level, or rounded otherwise", "[capt
 TEST_CASE("hints: another setting, or something missing among the inputs, found by running the pass", "[capture][hints][rerun]")
 {
     const auto runWith = [](const std::string& pass, const std::string& buffer, const std::function<void(Capture&)>& change) {
-        Capture other = golden();
+        Capture other = sharedGolden();
         change(other);
         const Rerun rerun = rerunPass(other, pass);
         return plantIn(buffer, [&](Buffer& b) {
@@ -511,48 +504,48 @@ TEST_CASE("hints: nothing is said of noise, and what wrong elements share is tru
 
 TEST_CASE("inputs: a texel's own inputs are those that its pass reads", "[capture][inputs]")
 {
-    const Buffer& mip = golden().at("lrsm0.depth.mip2");
+    const Buffer& mip = sharedGolden().at("lrsm0.depth.mip2");
     const std::size_t at[] = {1, 3, 5, 0};
-    const std::vector<TexelInput> four = inputsOf(golden(), mip, elementAt(mip, at));
+    const std::vector<TexelInput> four = inputsOf(sharedGolden(), mip, elementAt(mip, at));
     REQUIRE(four.size() == 4);
     CHECK(four[0].what == "lrsm0.depth.mip1, layer 1, row 6, column 10");
     CHECK(four[3].what == "lrsm0.depth.mip1, layer 1, row 7, column 11");
-    const Buffer& base = golden().at("lrsm0.normal.mip0");
-    const std::vector<TexelInput> block = inputsOf(golden(), base, elementAt(base, at));
+    const Buffer& base = sharedGolden().at("lrsm0.normal.mip0");
+    const std::vector<TexelInput> block = inputsOf(sharedGolden(), base, elementAt(base, at));
     REQUIRE(block.size() == 13);
     CHECK(block[0].what == "rsm0.depth, row 6, column 10");
     CHECK(says(block[12].what, "range of layer 1"));
-    const Buffer& voxels = golden().at("voxel.mip1");
-    CHECK(inputsOf(golden(), voxels, 0).size() == 8);
-    const Buffer& sum = golden().at("composite.combined");
-    CHECK(inputsOf(golden(), sum, 0).size() >= 4);
-    const Buffer& cones = golden().at("cones.irradiance");
-    CHECK(says(inputsOf(golden(), cones, 3).back().value, "--pixel 1,0"));
+    const Buffer& voxels = sharedGolden().at("voxel.mip1");
+    CHECK(inputsOf(sharedGolden(), voxels, 0).size() == 8);
+    const Buffer& sum = sharedGolden().at("composite.combined");
+    CHECK(inputsOf(sharedGolden(), sum, 0).size() >= 4);
+    const Buffer& cones = sharedGolden().at("cones.irradiance");
+    CHECK(says(inputsOf(sharedGolden(), cones, 3).back().value, "--pixel 1,0"));
 }
 
 TEST_CASE("bless: takes the candidate's bytes, records why, and refuses what is another frame", "[capture][bless]")
 {
-    Capture changed = golden();
+    Capture changed = sharedGolden();
     bufferIn(changed, "direct.radiance")->bytes[5] ^= std::byte(1);
-    const Capture next = blessed(golden(), changed, "a better light", "1.2");
-    REQUIRE(next.history.size() == golden().history.size() + 1);
+    const Capture next = blessed(sharedGolden(), changed, "a better light", "1.2");
+    REQUIRE(next.history.size() == sharedGolden().history.size() + 1);
     CHECK(next.history.back().reason == "a better light");
     CHECK(next.history.back().version == "1.2");
     CHECK(next.history.back().buffers == std::vector<std::string>{"direct.radiance"});
     CHECK(next.at("direct.radiance").bytes == changed.at("direct.radiance").bytes);
-    CHECK(blessed(golden(), golden(), "nothing", "1.2").history.size() == golden().history.size());
-    CHECK(says(errorOf([&] { (void)blessed(golden(), changed, " \t", "1.2"); }), "--reason"));
+    CHECK(blessed(sharedGolden(), sharedGolden(), "nothing", "1.2").history.size() == sharedGolden().history.size());
+    CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), changed, " \t", "1.2"); }), "--reason"));
 
-    Capture other = golden();
+    Capture other = sharedGolden();
     other.sceneHash[0] = other.sceneHash[0] == 'a' ? 'b' : 'a';
-    CHECK(says(errorOf([&] { (void)blessed(golden(), other, "x", "1"); }), "another scene"));
-    other = golden();
+    CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "another scene"));
+    other = sharedGolden();
     other.width += 1;
-    CHECK(says(errorOf([&] { (void)blessed(golden(), other, "x", "1"); }), "the golden"));
-    other = golden();
+    CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "the golden"));
+    other = sharedGolden();
     other.settings.cones.step = 0.25f;
-    CHECK(says(errorOf([&] { (void)blessed(golden(), other, "x", "1"); }), "step=0.25"));
-    other = golden();
+    CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "step=0.25"));
+    other = sharedGolden();
     other.buffers.pop_back();
-    CHECK(says(errorOf([&] { (void)blessed(golden(), other, "x", "1"); }), "has no composite.combined"));
+    CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "has no composite.combined"));
 }

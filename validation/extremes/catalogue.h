@@ -80,6 +80,9 @@ struct CurvePlan {
 };
 ExtremeCurve drawCurve(const CurvePlan& plan);
 
+/// Three significant digits.
+std::string shortText(double value);
+
 Group momentCases();
 Group layerCases();
 Group storageCases();

@@ -4,7 +4,6 @@
 #include "voxel/voxelize.h"
 
 #include <cmath>
-#include <cstdio>
 
 // Where accuracy degrades: error against how extreme the input is.
 namespace lrsm::extremes {
@@ -114,13 +113,6 @@ double furnaceError(Mode mode, double resolution)
     settings.voxel.resolution = static_cast<int>(resolution);
     const Frame frame = renderWorld(furnaceSphere(0.5f, 1.0f), settings, 8, 6);
     return std::abs(meanOf(frame.irradiance, frame.gbuffer) / 0.5 - 1.0);
-}
-
-std::string shortText(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
 }
 
 }  // namespace

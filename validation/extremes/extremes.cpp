@@ -9,14 +9,15 @@
 
 namespace lrsm {
 namespace extremes {
-namespace {
 
-std::string numberText(double value)
+std::string shortText(double value)
 {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
     return text;
 }
+
+namespace {
 
 /// One run; whatever it throws is a finding.
 void runOnce(const Case& entry, Mode mode, Probe& probe)
@@ -59,7 +60,7 @@ void Probe::bound(const std::string& name, double value, double limit)
     note(value);
     ++bounds_;
     const double share = std::abs(value) / std::max(limit, 1e-300);
-    const std::string text = name + " " + numberText(value) + ", bound " + numberText(limit);
+    const std::string text = name + " " + shortText(value) + ", bound " + shortText(limit);
     if (!(std::abs(value) <= limit)) require(false, text);
     if (share > worstShare_) {
         worstShare_ = share;
