@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
 # The arrows (no others): core <- voxel, lrsm, reference, imageio, report; voxel, lrsm <- conetrace; conetrace, reference <- validation;
-# conetrace <- capture; all <- apps.
+# conetrace <- capture; conetrace, reference <- sweep; all <- apps.
 # `reference` shares scene, materials and lights with the passes, and no visibility, filtering or gathering code: so it can judge.
 set(allowed_core/base core/base)
 set(allowed_core/scene core/base core/scene)
@@ -19,11 +19,12 @@ set(allowed_validation/equations ${passes} validation/equations)
 set(allowed_validation/ladder ${passes} reference validation validation/ladder)
 set(allowed_validation/extremes ${passes} validation/extremes)
 set(allowed_capture ${passes} core/imageio capture)
-set(allowed_apps ${passes} core/imageio core/report reference validation validation/equations validation/ladder validation/extremes capture apps)
+set(allowed_sweep ${passes} core/imageio reference sweep)
+set(allowed_apps ${passes} core/imageio core/report reference validation validation/equations validation/ladder validation/extremes capture sweep apps)
 # The second implementation reads and writes arrays, and has nothing of the passes.
 set(allowed_tests/twin core/base core/scene capture tests/twin catch.h scratch.h)
 set(folders core/base core/scene core/raster core/imageio core/report voxel lrsm conetrace reference validation validation/equations
-            validation/ladder validation/extremes capture apps tests/twin)
+            validation/ladder validation/extremes capture sweep apps tests/twin)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")

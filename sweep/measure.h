@@ -1,0 +1,74 @@
+#pragma once
+
+#include "core/scene/scene.h"
+#include "reference/metrics.h"
+#include "sweep/measurement.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// Renders a case with one setting, times it beside the calibration frame, and holds it against the truth.
+namespace lrsm {
+
+/// What the path tracer says of a case.
+struct Truth {
+    Image<Vec3> irradiance, variance;  ///< single bounce; variance of the mean
+    PixelMask covered;                 ///< pixels that show a surface
+    std::uint64_t samples = 0;
+    std::string sha256;                ///< of the samples' identity and number: part of the case's key
+};
+
+/// A scene seen by one camera at one size, with its truth.
+struct SceneCase {
+    std::string name;
+    Scene scene;
+    Camera camera;
+    int width = 0, height = 0;
+    Truth truth;
+};
+std::string caseKeyOf(const SceneCase& sceneCase);
+std::string rowKeyOf(const std::string& caseKey, const Settings& settings);
+std::string rowKeyOf(const std::string& caseKey, std::uint64_t pathTracerSamples);
+
+/// The noise floor and the exposure that FLIP uses, once a case.
+struct TruthFigures {
+    double noise = 0.0;         ///< RMSE of the truth itself over its mean
+    float exposureStops = 0.0f;
+};
+TruthFigures figuresOf(const Truth& truth);
+PictureError errorOf(const Truth& truth, const TruthFigures& figures, const Image<Vec3>& irradiance);
+
+/// A fixed frame (built-in Cornell box, 96 x 54, settings written out here and nowhere else), rendered beside every measurement: the unit of
+/// cost. What slows the machine for a while slows both.
+class Calibration {
+  public:
+    Calibration();
+    /// Renders it once: processor time and wall time of its passes, ms.
+    struct Times {
+        double cpu = 0.0, wall = 0.0;
+    };
+    Times run() const;
+
+  private:
+    Scene scene_;
+};
+
+struct MeasureOptions {
+    int repeat = 1;                         ///< frames timed; the calibration frame runs before each
+    std::function<void(double fraction)> progress = {};
+};
+
+struct Measured {
+    Measurement row;            ///< label, kind and base are the caller's to fill in
+    Image<Vec3> irradiance;
+};
+/// Nothing of the frame is hashed but the irradiance. Throws what renderFrame throws.
+Measured measureSettings(const SceneCase& sceneCase, const TruthFigures& figures, const Settings& settings, const Calibration& calibration,
+                         const MeasureOptions& options);
+
+/// The path tracer at 1, 2, 4 ... `maxSamples` paths a pixel, with other random numbers than the truth's.
+std::vector<Measured> measurePathTracer(const SceneCase& sceneCase, const TruthFigures& figures, std::uint64_t maxSamples, const Calibration& calibration,
+                                        const MeasureOptions& options);
+
+}  // namespace lrsm
