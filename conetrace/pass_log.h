@@ -3,6 +3,7 @@
 #include "conetrace/render.h"
 
 #include <chrono>
+#include <ctime>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,14 @@ std::uint64_t countNonFinite(const GBuffer& gbuffer);
 std::uint64_t countNonFinite(const Gathered& gathered);
 std::uint64_t countNonFinite(const Image<Vec3>& image);
 
+/// Of all threads of the process, ms: what other programs on the machine take does not count.
+inline double processorMilliseconds()
+{
+    timespec now{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 class PassLog {
   public:
     PassLog(const RenderOptions& options, int passes) : options_(options), passes_(passes) {}
@@ -48,10 +57,12 @@ class PassLog {
     {
         if (options_.progress) options_.progress(name, static_cast<double>(reports.size()) / passes_);
         const auto begin = std::chrono::steady_clock::now();
+        const double cpuBegin = processorMilliseconds();
         auto output = std::forward<Pass>(pass)();
+        const double cpu = processorMilliseconds() - cpuBegin;
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
         const PassSize size = sizeOf(output);
-        reports.push_back({name, elapsed.count(), size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string(),
+        reports.push_back({name, elapsed.count(), cpu, size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string(),
                            countNonFinite(output)});
         return output;
     }

@@ -15,6 +15,7 @@ namespace lrsm {
 struct PassReport {
     std::string name;          ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", ..., "gbuffer", "direct", "cones", "filter", "composite"
     double milliseconds = 0.0;
+    double cpuMilliseconds = 0.0;  ///< processor time of all threads of the process meanwhile
     std::size_t bytes = 0;     ///< held by the pass's output
     std::size_t gpuBytes = 0;  ///< the same in the GPU's formats
     std::string sha256;        ///< of the output; empty unless asked for
