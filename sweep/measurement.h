@@ -36,6 +36,9 @@ enum class RowKind {
     pathTracer   ///< the honest alternative: `samples` paths a pixel
 };
 
+/// "preset", "axis", "search", "path_tracer".
+const char* rowKindName(RowKind kind);
+
 /// Where a row's thumbnail is: thumbnails/<key>.png beside the rows.
 struct Measurement {
     std::string scene;        ///< name shown: built-in or stem of the file
@@ -64,7 +67,8 @@ struct Measurement {
 
 /// A flat object: scene, case, key, label, kind, base, spp, width, height, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min, frame_ms_spread, frame_cpu_ms,
 /// calibration_cpu_ms, cost, PASS_ms, PASS_ms_min, PASS_ms_spread for each of measuredPasses(), cones, cone_steps, voxel_taps, lrsm_samples, rays, instructions (null when unknown),
-/// bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
+/// bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer). Numbers that are not finite, and the times of passes
+/// that did not run, are null too; they read back as NaN and as no pass. Reads back to the same bits.
 nlohmann::ordered_json measurementJson(const Measurement& row);
 /// Throws InputError beginning with `place`.
 Measurement measurementFromJson(const nlohmann::ordered_json& json, const std::string& place);
