@@ -73,7 +73,8 @@ struct SearchResult {
     int pruned = 0;                   ///< settings that came up and were never rendered, those of the check not counted
     int refused = 0;                  ///< combinations without meaning
     int checked = 0, missed = 0;      ///< pruned settings visited anyway; those of them that are on the front
-    int pairs = 0, violations = 0;    ///< visited pairs, one nowhere coarser than the other; those whose error falsifies the slack
+    int pairs = 0;                    ///< visited pairs on the grid, one of them nowhere coarser than the other
+    int violations = 0, costViolations = 0;  ///< pairs whose errors, whose costs falsify the slack
     bool exhausted = false;           ///< nothing was left to visit
     bool stopped = false;             ///< by `stop` or `evaluate`
 };
