@@ -1,0 +1,52 @@
+#include "sweep/operating_points.h"
+
+#include "core/base/settings_table.h"
+
+#include <string>
+
+namespace lrsm {
+
+namespace {
+
+/// What each point changes against `balanced`. Narrower cones see finer voxels and maps, and need a longer emitter delay: all four go together.
+struct Point {
+    std::string_view name, assignments;
+};
+constexpr Point kPoints[] = {
+    {"1 cone, 128^3", "cone_count=1 voxel_resolution=128 rsm_resolution=256 start_voxels=1.5"},
+    {"2 cones, 128^3", "cone_count=2 voxel_resolution=128 rsm_resolution=256 start_voxels=1.5"},
+    {"3 cones, 256^3", "cone_count=3 voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
+    {"4 cones, 256^3", "cone_count=4 voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
+    {"6 cones, 256^3", "voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
+    {"6 cones, 512^3", ""},
+    {"9 cones, 512^3", "cone_count=9 emitter_delay_taps=2.5"},
+    {"12 cones, 512^3", "cone_count=12 emitter_delay_taps=2.5"},
+    {"16 cones, 512^3", "cone_count=16 emitter_delay_taps=3 emitter_slant_cap=0.25"},
+    {"24 cones, 512^3", "cone_count=24 rsm_resolution=2048 depth_layers=3 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"32 cones, 512^3", "cone_count=32 rsm_resolution=2048 depth_layers=3 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"32 cones, 1024^3",
+     "cone_count=32 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+};
+
+}  // namespace
+
+Settings settingsFromText(Settings base, std::string_view assignments)
+{
+    while (!assignments.empty()) {
+        const std::size_t end = assignments.find(' ');
+        const std::string_view word = assignments.substr(0, end);
+        if (!word.empty()) applySetting(base, std::string(word));
+        assignments.remove_prefix(end == std::string_view::npos ? assignments.size() : end + 1);
+    }
+    validate(base);
+    return base;
+}
+
+std::vector<NamedSettings> operatingPoints()
+{
+    std::vector<NamedSettings> points;
+    for (const Point& point : kPoints) points.push_back({std::string(point.name), settingsFromText(preset("balanced"), point.assignments)});
+    return points;
+}
+
+}  // namespace lrsm
