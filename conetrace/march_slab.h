@@ -59,6 +59,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
     constexpr float kNegligible = 6.0f;  // sigmas beyond which a layer has nothing in the segment
     const ConeSettings& settings = world.settings;
     const Lrsm& lrsm = world.lrsms[std::size_t(light)];
+    if (lrsm.layers() == 0) return Vec3(0.0f);
     const LightSpacePoint at = projectToLight(lrsm.projection, pWorld);
     if (!at.valid) return Vec3(0.0f);
 
@@ -74,9 +75,11 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
         const LayerRange& bounds = lrsm.ranges[std::size_t(layer)];
         if (at.depth + window < bounds.depthMin || at.depth - window > bounds.depthMax) continue;
-        if (!footprint)
+        if (!footprint) {
             footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel),
                                       settings.filterFraction);
+            if (outsideMap(*footprint)) return Vec3(0.0f);
+        }
         ++counts.lrsmSamples;
 
         // The three textures are read one after the other: most samples are decided by depth or normal alone.

@@ -108,6 +108,15 @@ inline LrsmFootprint makeFootprint(const Lrsm& lrsm, float u, float v, float lev
     return footprint;
 }
 
+/// True where every tap stands on the border, with weight 0: outside the map each layer holds exactly nothing. Most samples of a spot or of a
+/// point light's six faces are there.
+inline bool outsideMap(const LrsmFootprint& footprint)
+{
+    float weight = 0.0f;
+    for (int tap = 0; tap < footprint.taps; ++tap) weight += footprint.weight[tap];
+    return !(weight > 0.0f);
+}
+
 /// First texel of a layer, for the three lookups below.
 inline const LrsmTexel* layerTexels(const Lrsm& lrsm, int layer)
 {

@@ -53,22 +53,34 @@ class Classifier {
     int normalSlices_;
 };
 
-/// Valid RSM texels in each layer asked for.
-std::vector<std::uint64_t> countTexels(const Rsm& rsm, const Classifier& layersOf, std::size_t layers)
+/// RSM texels in each layer asked for: valid ones, and those of them that send any light.
+struct TexelCounts {
+    std::uint64_t valid = 0, lit = 0;
+};
+
+std::vector<TexelCounts> countTexels(const Rsm& rsm, const Classifier& layersOf, std::size_t layers)
 {
     constexpr std::size_t kRows = 64;
     const auto width = static_cast<std::size_t>(rsm.texels.width), height = static_cast<std::size_t>(rsm.texels.height);
-    std::vector<std::vector<std::uint64_t>> chunks((height + kRows - 1) / kRows, std::vector<std::uint64_t>(layers, 0));
+    std::vector<std::vector<TexelCounts>> chunks((height + kRows - 1) / kRows, std::vector<TexelCounts>(layers));
     parallelFor(height, kRows, [&](std::size_t begin, std::size_t end) {
         auto& counts = chunks[begin / kRows];
         for (std::size_t i = begin * width; i < end * width; ++i) {
             const Classifier::Layers in = layersOf(rsm.texels.texels[i], rsm.depthLinear.texels[i]);
-            for (int layer = in.first; layer <= in.last; layer += layersOf.stride()) ++counts[static_cast<std::size_t>(layer)];
+            const bool lit = rsm.texels.texels[i].radiance != Vec3(0.0f);
+            for (int layer = in.first; layer <= in.last; layer += layersOf.stride()) {
+                TexelCounts& count = counts[static_cast<std::size_t>(layer)];
+                ++count.valid;
+                count.lit += lit ? 1 : 0;
+            }
         }
     });
-    std::vector<std::uint64_t> total(layers, 0);
+    std::vector<TexelCounts> total(layers);
     for (const auto& counts : chunks)
-        for (std::size_t layer = 0; layer < layers; ++layer) total[layer] += counts[layer];
+        for (std::size_t layer = 0; layer < layers; ++layer) {
+            total[layer].valid += counts[layer].valid;
+            total[layer].lit += counts[layer].lit;
+        }
     return total;
 }
 
@@ -237,7 +249,7 @@ void fillLevels(const Prefilter& prefilter, Lrsm& lrsm)
 }
 
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& all, const std::vector<bool>& keep,
-               const Classifier& layersOf, const std::vector<std::uint64_t>& counts)
+               const Classifier& layersOf, const std::vector<TexelCounts>& counts)
 {
     Lrsm lrsm;
     lrsm.projection = rsm.projection;
@@ -248,7 +260,7 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<
         if (!keep[i]) continue;
         keptIndex[i] = lrsm.layers();
         lrsm.ranges.push_back(all[i]);
-        lrsm.validTexelsPerLayer.push_back(counts[i]);
+        lrsm.validTexelsPerLayer.push_back(counts[i].valid);
     }
     lrsm.texelsPerLayer = layOutLevels(lrsm.baseResolution, lrsm.levelOffset);
     requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map", "lower rsm_resolution or the number of layers");
@@ -270,9 +282,9 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
     validate(settings);
     const std::vector<LayerRange> all = partition(rsm, settings);
     const Classifier layersOf(all, std::max(settings.normalLayers, 1));
-    const std::vector<std::uint64_t> counts = countTexels(rsm, layersOf, all.size());
+    const std::vector<TexelCounts> counts = countTexels(rsm, layersOf, all.size());
     std::vector<bool> keep;
-    for (const std::uint64_t count : counts) keep.push_back(!settings.dropEmpty || count > 0);
+    for (const TexelCounts& count : counts) keep.push_back(!settings.dropEmpty || count.lit > 0);
     return buildLrsm(rsm, settings, all, keep, layersOf, counts);
 }
 

@@ -43,7 +43,7 @@ struct LayerSettings {
     float overlap = 0.0f;   ///< delta of Eq. 15 as a fraction of a depth slice, [0, 0.5]
     bool fitRanges = true;  ///< depth ranges fitted to the RSM's valid texels; false: equal slices of the light's whole range
     bool outermostDecay = false;  ///< true: Eq. 15 literally, also at the nearest and farthest end; false: the outer ranges reach delta further
-    bool dropEmpty = true;  ///< empty layers are neither stored nor sampled (no bit of the picture changes)
+    bool dropEmpty = true;  ///< layers without a lit texel are neither stored nor sampled (no bit of the picture changes)
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
     bool operator==(const LayerSettings&) const = default;

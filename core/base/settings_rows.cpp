@@ -120,7 +120,7 @@ void addBuildingRows(std::vector<SettingRow>& rows)
                                      {0, 0.5f}));
     rows.push_back(flag<&L::fitRanges>({"fit_ranges", "", "fit the depth slices to the RSM's valid texels; false: slices of the light's whole range", "ours; paper: static"}));
     rows.push_back(flag<&L::outermostDecay>({"outermost_decay", "", "Eq. 15 also falls off at the nearest and farthest end; false: the outer ranges reach delta further", "paper Eq. 15: true"}));
-    rows.push_back(flag<&L::dropEmpty>({"drop_empty", "", "empty layers are neither stored nor sampled (changes no bit of the picture)", "ours"}));
+    rows.push_back(flag<&L::dropEmpty>({"drop_empty", "", "layers without a lit texel are neither stored nor sampled (changes no bit of the picture)", "ours"}));
     rows.push_back(choice<&L::storage>({"layer_storage", "", "LRSM in half and UNORM16, or in float32", "paper Table 1: gpu"}, storage));
     rows.push_back(choice<&L::halfRounding>({"layer_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, rounding));
 

@@ -163,6 +163,21 @@ TEST_CASE("the border is 0: half at the map's edge, nothing far outside, nothing
     }
 }
 
+TEST_CASE("a footprint outside the map is told from one that reaches in: it samples exactly nothing", "[lrsm][sampler]")
+{
+    const Lrsm lrsm = smallLrsm(21);
+    std::mt19937 random(22);
+    int outside = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const float u = uniform(random, -1.2f, 2.2f), v = uniform(random, -1.2f, 2.2f), level = uniform(random, 0.0f, 5.0f);
+        const LrsmFootprint footprint = makeFootprint(lrsm, u, v, level, i % 2 ? FilterFraction::exact : FilterFraction::fixed8);
+        REQUIRE(outsideMap(footprint) == !(sampleDepth(layerTexels(lrsm, 0), footprint)[2] > 0.0f));  // the map is full
+        outside += outsideMap(footprint) ? 1 : 0;
+    }
+    CHECK(outside > 5000);
+    CHECK(outside < 19000);
+}
+
 TEST_CASE("levels are clamped to the chain; NaN is the base", "[lrsm][sampler]")
 {
     const Lrsm lrsm = smallLrsm(39);

@@ -204,6 +204,21 @@ TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrs
     }
 }
 
+TEST_CASE("a layer of texels that send no light is dropped; one lit texel keeps it whole", "[lrsm]")
+{
+    Rsm rsm = flatRsm(16, 0.1f);
+    for (int x = 0; x < 16; ++x) rsm.depthLinear.at(x, 3) = 0.9f, rsm.texels.at(x, 3).radiance = Vec3(0.0f);
+    const LayerSettings settings = layerSettings(2, 1, Storage::gpu);
+    const Lrsm dark = buildLrsm(rsm, settings);
+    REQUIRE(dark.layers() == 1);
+    CHECK(dark.ranges.front().depthMin == Approx(0.1f).epsilon(1e-3));
+    rsm.texels.at(7, 3).radiance = Vec3(0.0f, 0.0f, 0.5f);
+    const Lrsm lit = buildLrsm(rsm, settings);
+    REQUIRE(lit.layers() == 2);
+    CHECK(lit.validTexelsPerLayer.back() == 16);
+    CHECK(std::memcmp(lit.level(0, 0), dark.level(0, 0), dark.byteSize()) == 0);
+}
+
 TEST_CASE("degenerate maps: nothing drawn, one texel, one depth, the smallest size", "[lrsm]")
 {
     const auto storage = GENERATE(Storage::float32, Storage::gpu);
