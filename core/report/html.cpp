@@ -48,9 +48,14 @@ std::string htmlEscaped(std::string_view text)
     return result;
 }
 
+std::string pngUri(const std::vector<std::byte>& png)
+{
+    return "data:image/png;base64," + base64(png);
+}
+
 std::string pictureHtml(const ReportPicture& picture)
 {
-    return "<img alt=\"" + htmlEscaped(picture.title) + "\" src=\"data:image/png;base64," + base64(picture.png) + "\">";
+    return "<img alt=\"" + htmlEscaped(picture.title) + "\" src=\"" + pngUri(picture.png) + "\">";
 }
 
 std::string tableHtml(const ReportTable& table)

@@ -17,6 +17,9 @@ struct ReportPicture {
 
 std::string htmlEscaped(std::string_view text);
 
+/// "data:image/png;base64,...".
+std::string pngUri(const std::vector<std::byte>& png);
+
 /// An <img> that carries its picture.
 std::string pictureHtml(const ReportPicture& picture);
 

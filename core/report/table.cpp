@@ -16,7 +16,7 @@ std::size_t width(const std::string& text)
 
 bool isNumber(const std::string& cell)
 {
-    return cell.empty() || std::string_view("0123456789+-.").find(cell.front()) != std::string_view::npos || cell == "nan" || cell == "inf";
+    return cell.empty() || std::string_view("0123456789+-.<>").find(cell.front()) != std::string_view::npos || cell == "nan" || cell == "inf";
 }
 
 std::string csvCell(const std::string& cell)

@@ -16,7 +16,7 @@ struct ReportTable {
 /// Columns aligned with spaces, those of numbers alone to the right. Empty without rows.
 std::string textTable(const ReportTable& table);
 
-/// Which columns hold numbers (or nothing) alone: those stand to the right. One entry for each column of the head.
+/// Which columns hold numbers ("< 3" and nothing count as such) alone: those stand to the right. One entry for each column of the head.
 std::vector<bool> numberColumns(const ReportTable& table);
 
 /// RFC 4180, with "\n" for line ends; the head is the first line, the title is not written.
