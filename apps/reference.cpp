@@ -1,16 +1,16 @@
 #include "apps/commands.h"
 #include "apps/common_options.h"
 #include "apps/describe.h"
+#include "apps/interrupts.h"
 #include "apps/progress.h"
 #include "apps/reference_files.h"
+#include "apps/reference_run.h"
 #include "core/base/check.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
 
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -21,7 +21,6 @@ namespace lrsm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 struct ReferenceArguments : CommonOptions {
     std::string output, samples, model = "single", exposure = "auto";
@@ -31,31 +30,6 @@ struct ReferenceArguments : CommonOptions {
     double checkpointSeconds = 60.0;
     bool resume = false, bareLoop = false;
 };
-
-// The one thing a signal handler may touch.
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-/// Ctrl-C and SIGTERM ask for a stop while this lives; a second one ends the program at once.
-class CatchInterrupts {
-  public:
-    CatchInterrupts()
-    {
-        interrupted = false;
-        for (const int number : {SIGINT, SIGTERM}) std::signal(number, [](int received) {
-                interrupted = true;
-                std::signal(received, SIG_DFL);
-            });
-    }
-    ~CatchInterrupts()
-    {
-        for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
-    }
-    CatchInterrupts(const CatchInterrupts&) = delete;
-    CatchInterrupts& operator=(const CatchInterrupts&) = delete;
-};
-
-constexpr int kInterruptedCode = 130;  // what a shell reports for Ctrl-C
 
 ReferenceSettings chosenReference(const ReferenceArguments& options)
 {
@@ -80,70 +54,6 @@ SampleRange chosenRange(const ReferenceArguments& options)
     if (options.spp < 1 || options.spp > std::uint64_t(1) << 32) throw InputError("--spp " + std::to_string(options.spp), "must be 1 .. 2^32");
     return {0, options.spp};
 }
-
-Identity identify(const ReferenceArguments& options, const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash)
-{
-    Json eye = cameraJson(camera);
-    eye.erase("name");
-    return {{"version", LRSM_VERSION},
-            {"scene_sha256", sceneHash},
-            {"camera", eye.dump()},
-            {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
-            {"model", options.model},
-            {"seed", std::to_string(settings.seed)},
-            {"block", std::to_string(options.block)},
-            {"specular_aperture_degrees", Json(settings.specularApertureDegrees).dump()}};
-}
-
-/// Renders the samples of one state, writing checkpoints; false when interrupted.
-class Runner {
-  public:
-    Runner(const PathTracer& tracer, const ReferenceArguments& options, Checkpoint& checkpoint, Progress& progress)
-        : tracer_(tracer), options_(options), checkpoint_(checkpoint), progress_(progress), saved_(Clock::now())
-    {
-    }
-
-    bool finish(ReferenceState& state)
-    {
-        while (!tracer_.advance(state, Clock::now() + std::chrono::milliseconds(200), &interrupted)) {
-            show(state);
-            const bool due = std::chrono::duration<double>(Clock::now() - saved_).count() >= options_.checkpointSeconds;
-            if (due || interrupted) save(state);
-            if (interrupted) return false;
-        }
-        return true;
-    }
-
-  private:
-    void save(const ReferenceState& state)
-    {
-        checkpoint_.state = state;
-        std::filesystem::create_directories(options_.output);
-        writeFileWhole((std::filesystem::path(options_.output) / kSamplesFile).string(), encodeCheckpoint(checkpoint_));
-        saved_ = Clock::now();
-    }
-
-    void show(const ReferenceState& state)
-    {
-        const double done = PathTracer::progress(state);
-        if (firstShown_ < 0.0) {
-            firstShown_ = done;
-            begun_ = Clock::now();
-        }
-        const double elapsed = std::chrono::duration<double>(Clock::now() - begun_).count(), gained = done - firstShown_;
-        const double left = gained > 0.0 ? elapsed * (1.0 - done) / gained : 0.0;
-        char text[64];
-        std::snprintf(text, sizeof text, "tracing, %d:%02d left", int(left) / 60, int(left) % 60);
-        progress_.show(text, done);
-    }
-
-    const PathTracer& tracer_;
-    const ReferenceArguments& options_;
-    Checkpoint& checkpoint_;
-    Progress& progress_;
-    Clock::time_point saved_, begun_;
-    double firstShown_ = -1.0;
-};
 
 /// Samples can be added to the end of what is there.
 void requireBeginning(const ReferenceState& state, const SampleRange& range, const std::string& place)
@@ -177,12 +87,6 @@ std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, cons
     return found;
 }
 
-Json speedJson(const RayCounts& rays, double seconds)
-{
-    return {{"eye", rays.eye}, {"bounce", rays.bounce}, {"light", rays.light}, {"total", rays.total()}, {"seconds", seconds},
-            {"million_per_second", seconds > 0.0 ? double(rays.total()) / seconds * 1e-6 : 0.0}};
-}
-
 int runReference(const ReferenceArguments& options)
 {
     if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
@@ -202,22 +106,18 @@ int runReference(const ReferenceArguments& options)
     const Scene scene = loadChosenScene(options);
     const Camera camera = chosenCamera(scene, options);
     const std::string sceneHash = hashScene(scene);
-    Checkpoint checkpoint{identify(options, settings, camera, sceneHash), sampleUnit(scene), {}};
+    Checkpoint checkpoint{identifyReference(settings, camera, sceneHash), sampleUnit(scene), {}};
     std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
     Progress progress(options.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, settings);
 
-    // What is there, what is left: an unfinished range first, then what a larger one adds.
     const CatchInterrupts catching;
-    Runner runner(tracer, options, checkpoint, progress);
+    const TraceOptions trace{.folder = options.output, .checkpointSeconds = options.checkpointSeconds,
+                             .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); }, .stop = &catching.asked()};
     ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(range);
-    bool complete = state.finished() || runner.finish(state);
-    if (complete && state.sums.ranges.back().end < range.end) {
-        tracer.extend(state, {state.sums.ranges.back().end, range.end});
-        complete = runner.finish(state);
-    }
+    const bool complete = traceRange(tracer, state, range, checkpoint, trace);
     progress.clear();
     if (!complete) {
         std::cerr << "lrsm: interrupted; what is done is in " << options.output << " (--resume continues)" << std::endl;
@@ -226,15 +126,7 @@ int runReference(const ReferenceArguments& options)
     const double seconds = state.seconds;
     checkpoint.state = std::move(state);
     const RayCounts rays = checkpoint.state.rays;
-    Json json = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"command", "reference"}, {"size", {settings.width, settings.height}}};
-    json["samples"] = checkpoint.state.sums.sampleCount();
-    json["sample_ranges"] = describeRanges(checkpoint.state.sums.ranges);
-    json["settings"] = {{"model", options.model}, {"seed", settings.seed}, {"block", options.block}, {"specular_aperture_degrees", settings.specularApertureDegrees}};
-    json["scene"] = sceneJson(scene, sceneHash);
-    json["camera"] = cameraJson(camera);
-    json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
-    json["rays"] = speedJson(rays, seconds);
-    json["not_finite_samples"] = checkpoint.state.invalidSamples;
+    Json json = referenceJson(scene, sceneHash, camera, tracer, checkpoint.state);
     if (options.bareLoop) {
         const BareLoop bare = tracer.timeBareLoop(std::max<std::size_t>(1, tracer.primary().covered.texels.size() / 65536));
         const double rate = bare.seconds > 0.0 ? double(bare.rays) / bare.seconds : 0.0;

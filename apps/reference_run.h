@@ -1,0 +1,31 @@
+#pragma once
+
+#include "reference/checkpoint.h"
+#include "reference/path_trace.h"
+
+#include <atomic>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+/// One reference from its first sample to its files, interruptible: what `lrsm reference` does, and what measures against a truth does too.
+namespace lrsm {
+
+/// What samples belong to: program version, scene, camera, size, model, seed, block, aperture of the cone layer.
+Identity identifyReference(const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash);
+
+struct TraceOptions {
+    std::string folder;                      ///< of samples.bin; empty: no checkpoints
+    double checkpointSeconds = 60.0;
+    std::function<void(const std::string& text, double fraction)> show = {};  ///< told the time left, five times a second
+    const std::atomic<bool>* stop = nullptr;
+};
+
+/// Renders what is left of the state's own range, then what `range` adds at its end. False when stopped: the folder then holds what is done, in `checkpoint`'s
+/// identity and unit.
+bool traceRange(const PathTracer& tracer, ReferenceState& state, const SampleRange& range, Checkpoint& checkpoint, const TraceOptions& options);
+
+/// frame.json of a finished reference.
+nlohmann::ordered_json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer, const ReferenceState& state);
+
+}  // namespace lrsm
