@@ -12,6 +12,7 @@ struct Command {
     std::function<int()> run;  ///< returns 0 or 1; bad input and machine trouble are thrown
 };
 
+Command addBench(CLI::App& program);
 Command addCapture(CLI::App& program);
 Command addCheck(CLI::App& program);
 Command addCompare(CLI::App& program);

@@ -56,7 +56,7 @@ int main(int argc, char** argv)
     program.footer("Exit codes: 0 done, 1 a check failed, 2 bad usage or input, 3 the machine failed us.");
     const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),      lrsm::addRender(program), lrsm::addReference(program),
                                                  lrsm::addMerge(program), lrsm::addCompare(program), lrsm::addValidate(program), lrsm::addCapture(program), lrsm::addCheck(program),
-                                                 lrsm::addSettings(program)};
+                                                 lrsm::addBench(program), lrsm::addSettings(program)};
 
     try {
         if (argc > 1 && argv[1][0] != '-') refuseUnknownCommand(program, argv[1]);
