@@ -95,9 +95,15 @@ Chart chartOf(const std::string& title, const std::string& xLabel, const std::st
     return chart;
 }
 
+/// A preset's name is its series'.
+std::string settingsLine(const Measurement& row)
+{
+    return (row.kind == RowKind::pathTracer ? "" : "against balanced: ") + changedText(row);
+}
+
 std::string hoverOf(const Measurement& row)
 {
-    std::string text = row.label + "\nagainst balanced: " + changedText(row) + "\nerror " + percentText(row.error.net());
+    std::string text = settingsLine(row) + "\nerror " + percentText(row.error.net());
     if (row.error.net() <= row.error.noise) text += " (<= floor)";
     text += ", FLIP " + shortNumber(row.error.flip) + ", energy " + shortNumber(row.error.energy) + "\ntime " + shortNumber(row.cost) + " calibration frames; here " +
             shortNumber(row.frame.median) + " ms, " + shortNumber(row.frameCpu) + " ms of processor time";
@@ -137,7 +143,7 @@ std::vector<Dot> combinedDots(const std::vector<CombinedRow>& rows, const Combin
     std::vector<Dot> dots;
     for (const CombinedRow& row : rows) {
         Dot dot{row.rows.front(), x(row), row.error, {}, {}};
-        dot.hover = dot.row->label + "\nagainst balanced: " + changedText(*dot.row) + "\nover balanced: error " + shortNumber(row.error) + ", time " + shortNumber(row.cost);
+        dot.hover = settingsLine(*dot.row) + "\nover balanced: error " + shortNumber(row.error) + ", time " + shortNumber(row.cost);
         if (dot.row->bytes) dot.hover += ", memory " + shortNumber(row.bytes);
         for (std::size_t i = 0; i < row.rows.size(); ++i) {
             dot.hover += "\n" + all.cases[i]->name + ": " + percentText(row.rows[i]->error.net()) + ", " + shortNumber(row.rows[i]->cost) + " frames";

@@ -71,13 +71,14 @@ std::string effectsHtml(const std::vector<CaseRows>& cases, double unit, double 
 
 std::string rivalsHtml(const std::vector<CaseRows>& cases)
 {
-    const ReportTable equal = equalTable(presetsAgainstPathTracer(cases)), tracer = tracerTable(pathTracerAgainstFront(cases));
+    const std::vector<EqualRow> presets = presetsAgainstPathTracer(cases);
+    const ReportTable equal = equalTable(presets), tracer = tracerTable(pathTracerAgainstFront(cases));
     if (equal.rows.empty() && tracer.rows.empty()) return {};
     std::string html = headingHtml("Equal time and equal error: the path tracer");
     html += paragraphHtml("The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between its measured points in "
                           "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
                           "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no ratio is given.");
-    if (!equal.rows.empty()) html += foldedHtml("Each preset against the path tracer", tableHtml(equal), true);
+    if (!equal.rows.empty()) html += tableHtml(equalSummaryTable(summarizeEqual(presets))) + foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(equal), cases.size() == 1);
     if (!tracer.rows.empty()) html += foldedHtml("The path tracer against the cheapest point of each scene's front that errs no more", tableHtml(tracer));
     return html;
 }

@@ -3,6 +3,7 @@
 #include "core/base/settings_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lrsm {
 namespace {
@@ -44,6 +45,12 @@ std::vector<std::string> effectRow(const Effect& e)
             std::to_string(e.changed) + " of " + std::to_string(e.cases)};
 }
 
+/// Calibration frames and milliseconds: no powers of ten where digits do.
+std::string timeText(double value)
+{
+    return value >= 1000.0 && value < 1e7 ? std::to_string(std::llround(value)) : shortNumber(value);
+}
+
 std::string errorText(const Looked& looked, const std::string& end)
 {
     switch (looked.reach) {
@@ -58,9 +65,9 @@ std::string errorText(const Looked& looked, const std::string& end)
 std::string costText(const Looked& looked)
 {
     switch (looked.reach) {
-        case Reach::measured: return shortNumber(looked.value);
-        case Reach::before: return "< " + shortNumber(looked.value);
-        case Reach::beyond: return "> " + shortNumber(looked.value);
+        case Reach::measured: return timeText(looked.value);
+        case Reach::before: return "< " + timeText(looked.value);
+        case Reach::beyond: return "> " + timeText(looked.value);
         case Reach::belowFloor: break;
     }
     return "<= floor";
@@ -88,13 +95,13 @@ std::string changedText(const Measurement& row)
 
 ReportTable casesTable(const std::vector<CaseRows>& cases)
 {
-    ReportTable table{"Scenes", {"scene", "size", "settings", "path tracer", "noise floor, %", "balanced: error, %", "frames", "ms", "MB"}, {}};
+    ReportTable table{"Scenes", {"scene", "size", "settings", "path tracer, spp", "truth, spp", "noise floor, %", "balanced: error, %", "frames", "ms", "MB"}, {}};
     for (const CaseRows& one : cases) {
         const Measurement& any = one.settings.empty() ? *one.pathTracer.front() : *one.settings.front();
         std::vector<std::string> row = {one.name, std::to_string(any.width) + " x " + std::to_string(any.height), std::to_string(one.settings.size()),
-                                        one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples), shortNumber(100.0 * any.error.noise)};
+                                        one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples), std::to_string(any.truthSamples), shortNumber(100.0 * any.error.noise)};
         if (const Measurement* balanced = findSettings(one, Settings{}))
-            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), shortNumber(balanced->cost), shortNumber(balanced->frame.median), megabytes(balanced->bytes)});
+            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), timeText(balanced->cost), timeText(balanced->frame.median), megabytes(balanced->bytes)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -132,11 +139,21 @@ ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<E
     return table;
 }
 
+ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets)
+{
+    ReportTable table{"Path tracer over preset: geometric means over the scenes that have the ratio",
+                      {"preset", "error at equal time", "scenes", "time at equal error", "scenes"}, {}};
+    for (const EqualSummary& p : presets)
+        table.rows.push_back({p.preset, p.errorRatios ? shortNumber(p.errorRatio) : "", std::to_string(p.errorRatios) + " of " + std::to_string(p.cases),
+                              p.costRatios ? shortNumber(p.costRatio) : "", std::to_string(p.costRatios) + " of " + std::to_string(p.cases)});
+    return table;
+}
+
 ReportTable equalTable(const std::vector<EqualRow>& rows)
 {
     ReportTable table{"", {"scene", "preset", "frames", "error, %", "equal time: its error, %", "ratio", "equal error: its frames", "ratio"}, {}};
     for (const EqualRow& r : rows)
-        table.rows.push_back({r.name, r.preset, shortNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
+        table.rows.push_back({r.name, r.preset, timeText(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
                               ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
     return table;
 }
@@ -145,8 +162,8 @@ ReportTable tracerTable(const std::vector<TracerRow>& rows)
 {
     ReportTable table{"", {"scene", "spp", "frames", "error, %", "LRSM: frames", "error, %", "ratio of frames", "LRSM's settings against balanced"}, {}};
     for (const TracerRow& r : rows) {
-        std::vector<std::string> row = {r.name, std::to_string(r.samples), shortNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
-        if (r.rival) row.insert(row.end(), {shortNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
+        std::vector<std::string> row = {r.name, std::to_string(r.samples), timeText(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
+        if (r.rival) row.insert(row.end(), {timeText(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
         else row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "", r.atFloor ? "not compared" : "none errs as little"});
         table.rows.push_back(std::move(row));
     }
@@ -157,7 +174,7 @@ ReportTable frontTable(const std::string& title, const std::vector<const Measure
 {
     ReportTable table{title, {"frames", "ms", "error, %", "FLIP", "energy", "MB", "settings against balanced"}, {}};
     for (const Measurement* row : front)
-        table.rows.push_back({shortNumber(row->cost), shortNumber(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
+        table.rows.push_back({timeText(row->cost), timeText(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
                               shortNumber(row->error.flip), shortNumber(row->error.energy), megabytes(row->bytes), changedText(*row)});
     return table;
 }

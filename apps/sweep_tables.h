@@ -22,6 +22,7 @@ ReportTable effectsTable(const std::vector<Effect>& effects);
 ReportTable nothingTable(const std::vector<Effect>& effects);
 /// Values on no front; the others of the same settings are named beside them. `unchanged`: labels ("key=value") that change no bit.
 ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<Effect>& effects);
+ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets);
 ReportTable equalTable(const std::vector<EqualRow>& rows);
 ReportTable tracerTable(const std::vector<TracerRow>& rows);
 ReportTable frontTable(const std::string& title, const std::vector<const Measurement*>& front);

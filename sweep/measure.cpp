@@ -98,6 +98,7 @@ Measurement rowOf(const SceneCase& sceneCase)
     row.caseKey = caseKeyOf(sceneCase);
     row.width = sceneCase.width;
     row.height = sceneCase.height;
+    row.truthSamples = sceneCase.truth.samples;
     return row;
 }
 

@@ -140,6 +140,7 @@ Json measurementJson(const Measurement& row)
                  {"spp", row.samples},
                  {"width", row.width},
                  {"height", row.height},
+                 {"truth_spp", row.truthSamples},
                  {"energy", numberJson(row.error.energy)},
                  {"rmse", numberJson(row.error.rmse)},
                  {"net", numberJson(row.error.net())},
@@ -182,6 +183,7 @@ Measurement measurementFromJson(const Json& json, const std::string& place)
     row.samples = reader.count("spp");
     row.width = static_cast<int>(reader.count("width"));
     row.height = static_cast<int>(reader.count("height"));
+    row.truthSamples = reader.count("truth_spp");
     // `net` follows from rmse and noise.
     row.error = {reader.number("energy"), reader.number("rmse"), reader.number("mae"), reader.number("flip"), reader.number("noise")};
     row.frame = readTime(reader, "frame_ms");

@@ -50,6 +50,7 @@ struct Measurement {
     std::uint64_t samples = 0;  ///< paths a pixel of the path tracer; 0: LRSM
     Settings settings;        ///< of an LRSM row
     int width = 0, height = 0;
+    std::uint64_t truthSamples = 0;  ///< paths a pixel of the truth
 
     PictureError error;
 
@@ -65,7 +66,7 @@ struct Measurement {
     std::string irradianceSha256;  ///< equal hashes: equal bits
 };
 
-/// A flat object: scene, case, key, label, kind, base, spp, width, height, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min, frame_ms_spread, frame_cpu_ms,
+/// A flat object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min, frame_ms_spread, frame_cpu_ms,
 /// calibration_cpu_ms, cost, PASS_ms, PASS_ms_min, PASS_ms_spread for each of measuredPasses(), cones, cone_steps, voxel_taps, lrsm_samples, rays, instructions (null when unknown),
 /// bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer). Numbers that are not finite, and the times of passes
 /// that did not run, are null too; they read back as NaN and as no pass. Reads back to the same bits.

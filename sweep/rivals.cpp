@@ -1,5 +1,7 @@
 #include "sweep/rivals.h"
 
+#include <algorithm>
+
 namespace lrsm {
 namespace {
 
@@ -57,6 +59,28 @@ std::vector<EqualRow> presetsAgainstPathTracer(const std::vector<CaseRows>& case
     for (const CaseRows& one : cases)
         for (const Measurement* row : one.settings)
             if (row->kind == RowKind::preset && !one.pathTracer.empty()) all.push_back(equalRow(one, *row));
+    return all;
+}
+
+std::vector<EqualSummary> summarizeEqual(const std::vector<EqualRow>& rows)
+{
+    std::vector<EqualSummary> all;
+    for (const EqualRow& first : rows) {
+        if (std::any_of(all.begin(), all.end(), [&](const EqualSummary& s) { return s.preset == first.preset; })) continue;
+        EqualSummary summary{first.preset};
+        std::vector<double> errors, costs;
+        for (const EqualRow& row : rows) {
+            if (row.preset != first.preset) continue;
+            ++summary.cases;
+            if (row.errorRatio) errors.push_back(*row.errorRatio);
+            if (row.costRatio) costs.push_back(*row.costRatio);
+        }
+        summary.errorRatios = errors.size();
+        summary.costRatios = costs.size();
+        if (!errors.empty()) summary.errorRatio = geometricMean(errors);
+        if (!costs.empty()) summary.costRatio = geometricMean(costs);
+        all.push_back(summary);
+    }
     return all;
 }
 

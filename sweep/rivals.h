@@ -38,6 +38,15 @@ struct EqualRow {
 /// Each row of kind preset in each case that has a path tracer.
 std::vector<EqualRow> presetsAgainstPathTracer(const std::vector<CaseRows>& cases);
 
+/// A preset over all cases: geometric means of the ratios, where there is one.
+struct EqualSummary {
+    std::string preset;
+    std::size_t cases = 0, errorRatios = 0, costRatios = 0;
+    double errorRatio = 0.0, costRatio = 0.0;  ///< 0 without any
+};
+/// By first appearance.
+std::vector<EqualSummary> summarizeEqual(const std::vector<EqualRow>& rows);
+
 /// The path tracer at so many paths against the cheapest point of the time front that errs no more.
 struct TracerRow {
     std::string name;

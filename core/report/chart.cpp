@@ -146,7 +146,7 @@ std::string chartHtml(const Chart& chart)
     config["options"]["scales"] = {{"x", axis(chart.xLabel, chart.logX)}, {"y", axis(chart.yLabel, chart.logY)}};
     if (chart.logX) padLogarithmic(config["options"]["scales"]["x"], chart, &ChartSeries::x);
     if (chart.logY) padLogarithmic(config["options"]["scales"]["y"], chart, &ChartSeries::y);
-    config["options"]["plugins"]["legend"]["labels"] = {{"usePointStyle", true}};
+    config["options"]["plugins"]["legend"]["labels"] = {{"usePointStyle", true}, {"boxHeight", 7}, {"padding", 12}};
     return figure(chart.title, config);
 }
 

@@ -24,6 +24,7 @@ Measurement fullRow()
     row.base = "balanced";
     row.width = 320;
     row.height = 180;
+    row.truthSamples = 4096;
     row.error = {1.0 / 3.0, 0.1 + 0.2, 0.05, 0.011, 0.0123};
     row.frame = {12.5, 11.0 / 7.0, 0.25};
     row.frameCpu = 24.75;
@@ -86,7 +87,7 @@ TEST_CASE("a row's columns are the documented ones, the same for every row, and 
     std::set<std::string> names;
     for (const auto& [key, value] : json.items()) names.insert(key);
     CHECK(names.size() == json.size());
-    const std::size_t fixed = 15 + 6 + 3 * measuredPasses().size() + 9;
+    const std::size_t fixed = 16 + 6 + 3 * measuredPasses().size() + 9;
     CHECK(json.size() == fixed + settingsToJson(Settings()).size());
     CHECK(json.contains("voxel_mips_ms_spread"));
     auto other = bare.items().begin();

@@ -24,6 +24,7 @@ inline Measurement syntheticRow(int scene, const std::string& label, RowKind kin
     row.kind = kind;
     row.width = 320;
     row.height = 180;
+    row.truthSamples = 1024;
     row.error.noise = kNoise * (scene + 1);
     row.error.rmse = std::hypot(net * (scene + 1), row.error.noise);
     row.error.mae = 0.7 * row.error.rmse;

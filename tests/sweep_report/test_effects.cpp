@@ -170,6 +170,19 @@ TEST_CASE("presets and path tracer are compared at equal time and at equal error
     REQUIRE(balanced.costRatio);
     CHECK(balanced.tracerCost.value == Approx(3.0 * 32.0));
     CHECK(*balanced.costRatio == Approx(8.0));
+
+    std::vector<EqualRow> some = equal;
+    some[0].costRatio.reset();
+    *some[3].costRatio = 2.0;
+    some[0].errorRatio = 9.0;
+    some[3].errorRatio = 4.0;
+    const std::vector<EqualSummary> summary = summarizeEqual(some);
+    REQUIRE(summary.size() == 3);
+    CHECK(summary[0].preset == "balanced");
+    CHECK(summary[0].cases == 2);
+    CHECK(summary[0].costRatios == 1);
+    CHECK(summary[0].costRatio == Approx(2.0));
+    CHECK(summary[0].errorRatio == Approx(6.0));
 }
 
 TEST_CASE("nothing is compared below the noise floor or beyond what was measured", "[sweep]")
