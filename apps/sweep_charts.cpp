@@ -117,7 +117,15 @@ using Figure = double (*)(const Measurement&);
 std::vector<Dot> dotsOf(const std::vector<const Measurement*>& rows, const SweepPictures& pictures, Figure x, Figure y)
 {
     std::vector<Dot> dots;
-    for (const Measurement* row : rows) dots.push_back({row, x(*row), y(*row), hoverOf(*row), pictures.of(*row)});
+    for (const Measurement* row : rows) {
+        Dot dot{row, x(*row), y(*row), hoverOf(*row), pictures.of(*row)};
+        const std::vector<int> truth = pictures.truthOf(*row);
+        if (!dot.pictures.empty() && !truth.empty()) {
+            dot.pictures.push_back(truth.front());
+            dot.hover += "\nthis, and the truth:";
+        }
+        dots.push_back(std::move(dot));
+    }
     return dots;
 }
 
@@ -185,30 +193,43 @@ std::vector<int> SweepPictures::of(const Measurement& row) const
     return place == byKey.end() ? std::vector<int>{} : std::vector<int>{place->second};
 }
 
+std::vector<int> SweepPictures::truthOf(const Measurement& row) const
+{
+    const auto place = byKey.find(row.caseKey);
+    return place == byKey.end() ? std::vector<int>{} : std::vector<int>{place->second};
+}
+
 SweepPictures loadThumbnails(const std::vector<CaseRows>& cases, const CombinedCases& all, const std::string& directory, std::size_t budget)
 {
-    const auto sizeOf = [&](const Measurement& row) -> std::size_t {
+    const auto fileOf = [&](const std::string& key) { return fs::path(directory) / "thumbnails" / (key + ".png"); };
+    const auto sizeOf = [&](const std::string& key) -> std::size_t {
         std::error_code error;
-        const auto size = fs::file_size(fs::path(directory) / "thumbnails" / (row.key + ".png"), error);
+        const auto size = fs::file_size(fileOf(key), error);
         return error ? 0 : static_cast<std::size_t>(size);
+    };
+    const auto keysOf = [&](const std::vector<const Measurement*>& rows) {
+        std::vector<std::string> keys;
+        for (const CaseRows& one : cases) keys.push_back(one.caseKey);
+        for (const Measurement* row : rows) keys.push_back(row->key);
+        return keys;
     };
     std::vector<const Measurement*> wanted = mostWanted(cases, all), every = wanted;
     for (const CaseRows& one : cases) addShown(every, one.settings);
     SweepPictures pictures;
     std::size_t sum = 0, held = 0;
-    for (const Measurement* row : every) {
-        const std::size_t size = sizeOf(*row);
+    for (const std::string& key : keysOf(every)) {
+        const std::size_t size = sizeOf(key);
         pictures.found += size > 0 ? 1 : 0;
         sum += size;
     }
-    for (const Measurement* row : sum <= budget ? every : wanted) {
-        const std::size_t size = sizeOf(*row);
+    for (const std::string& key : keysOf(sum <= budget ? every : wanted)) {
+        const std::size_t size = sizeOf(key);
         if (size == 0 || held + size > budget) continue;
         held += size;
-        const std::vector<unsigned char> bytes = readFile((fs::path(directory) / "thumbnails" / (row->key + ".png")).string());
+        const std::vector<unsigned char> bytes = readFile(fileOf(key).string());
         std::vector<std::byte> png(bytes.size());
         std::transform(bytes.begin(), bytes.end(), png.begin(), [](unsigned char b) { return std::byte(b); });
-        pictures.byKey.emplace(row->key, static_cast<int>(pictures.pngs.size()));
+        pictures.byKey.emplace(key, static_cast<int>(pictures.pngs.size()));
         pictures.pngs.push_back(std::move(png));
     }
     return pictures;

@@ -16,8 +16,9 @@ struct SweepPictures {
     std::vector<std::vector<std::byte>> pngs;
     std::unordered_map<std::string, int> byKey;  ///< a row's key to its place; looked up, never walked
     std::size_t found = 0;  ///< files there were
-    /// A list of none or one.
+    /// A list of none or one: the row's; the truth's, whose key is the case's.
     std::vector<int> of(const Measurement& row) const;
+    std::vector<int> truthOf(const Measurement& row) const;
 };
 /// Those of DIR/thumbnails; where they sum to more than `budget` bytes, first of fronts, presets and path tracer, and no more than the budget holds.
 SweepPictures loadThumbnails(const std::vector<CaseRows>& cases, const CombinedCases& all, const std::string& directory, std::size_t budget);

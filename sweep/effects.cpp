@@ -18,9 +18,10 @@ double medianOf(std::vector<double> values)
     return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// A row beside the row that it departs from.
+/// A row beside the row that it departs from, and what to call the two.
 struct Step {
     const Measurement *row, *base;
+    std::string label, around;
 };
 
 std::string baseNameOf(const Measurement& row)
@@ -30,15 +31,34 @@ std::string baseNameOf(const Measurement& row)
     return single ? "balanced" : "";
 }
 
+/// A value that means nothing without another ("density_k=4 estimator=paper") is held against the row that has that other alone: its label's first word is the value.
+/// nullptr where it stands alone, or where that row was not measured.
+const Measurement* companionRow(const CaseRows& rows, const Measurement& row, const Settings& base)
+{
+    const std::vector<SettingDifference> changed = differences(base, row.settings);
+    const std::string key = row.label.substr(0, row.label.find('='));
+    if (changed.size() < 2) return nullptr;
+    for (const SettingDifference& d : changed)
+        if (d.key == key) {
+            Settings without = row.settings;
+            applySetting(without, key + "=" + d.a);
+            return findSettings(rows, without);
+        }
+    return nullptr;
+}
+
 std::vector<Step> stepsOf(const CaseRows& rows)
 {
+    const std::vector<std::string> known = presetNames();
     std::vector<Step> steps;
     for (const Measurement* row : rows.settings) {
         const std::string name = baseNameOf(*row);
-        const std::vector<std::string> known = presetNames();
         if (std::find(known.begin(), known.end(), name) == known.end()) continue;
-        const Measurement* base = findSettings(rows, preset(name));
-        if (base && base != row) steps.push_back({row, base});
+        const Settings settings = preset(name);
+        if (const Measurement* companion = companionRow(rows, *row, settings))
+            steps.push_back({row, companion, row->label.substr(0, row->label.find(' ')), name + " " + companion->label});
+        else if (const Measurement* base = findSettings(rows, settings); base && base != row)
+            steps.push_back({row, base, row->label, name});
     }
     return steps;
 }
@@ -48,10 +68,8 @@ bool equalBits(const Step& step)
     return !step.row->irradianceSha256.empty() && step.row->irradianceSha256 == step.base->irradianceSha256;
 }
 
-struct Group {
-    std::string base;
-    std::vector<Step> steps;
-};
+
+using Group = std::vector<Step>;
 
 /// The same settings around the same base, over the cases.
 std::vector<Group> groupsOf(const std::vector<CaseRows>& cases)
@@ -59,10 +77,10 @@ std::vector<Group> groupsOf(const std::vector<CaseRows>& cases)
     std::vector<Group> groups;
     for (const CaseRows& one : cases)
         for (const Step& step : stepsOf(one)) {
-            const std::string base = baseNameOf(*step.row);
-            auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.base == base && g.steps.front().row->settings == step.row->settings; });
-            if (found == groups.end()) found = groups.insert(groups.end(), Group{base, {}});
-            found->steps.push_back(step);
+            const auto same = [&](const Group& group) { return group.front().around == step.around && group.front().row->settings == step.row->settings; };
+            auto found = std::find_if(groups.begin(), groups.end(), same);
+            if (found == groups.end()) found = groups.insert(groups.end(), Group{});
+            found->push_back(step);
         }
     return groups;
 }
@@ -76,19 +94,18 @@ EffectKind kindOf(const Effect& effect, double tolerance)
 
 Effect effectOf(const Group& group, double unit, double tolerance)
 {
-    const Measurement& first = *group.steps.front().row;
     Effect effect;
-    effect.label = first.label;
-    effect.base = group.base;
-    effect.cases = group.steps.size();
+    effect.label = group.front().label;
+    effect.base = group.front().around;
+    effect.cases = group.size();
     std::vector<CostError> ratios;
     std::vector<double> bytes;
-    for (const Step& step : group.steps) {
+    for (const Step& step : group) {
         ratios.push_back(relativeTo(*step.row, *step.base));
         if (step.row->bytes > 0 && step.base->bytes > 0) bytes.push_back(static_cast<double>(step.row->bytes) / static_cast<double>(step.base->bytes));
         effect.changed += equalBits(step) ? 0 : 1;
         effect.worstError = ratios.size() == 1 ? ratios.back().error - 1.0 : std::max(effect.worstError, ratios.back().error - 1.0);
-        effect.milliseconds += (step.row->cost - step.base->cost) * unit / static_cast<double>(group.steps.size());
+        effect.milliseconds += (step.row->cost - step.base->cost) * unit / static_cast<double>(group.size());
     }
     const CostError all = combineScenes(ratios);
     effect.error = all.error - 1.0;

@@ -116,6 +116,21 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     CHECK(costNoise(casesOf({})) == 0.0);
 }
 
+TEST_CASE("a value that needs another beside it is held against the row with that other alone", "[sweep]")
+{
+    std::vector<Measurement> rows = syntheticSweep(1);
+    rows.push_back(syntheticAxis(0, "estimator=paper", 0.4, 2.0, 100'000'000));
+    rows.push_back(syntheticAxis(0, "density_k=4", 0.5, 2.0, 100'000'000));
+    applySetting(rows.back().settings, "estimator=paper");
+    rows.back().label += " estimator=paper";
+    const std::vector<CaseRows> cases = casesOf(rows);
+    const std::vector<Effect> effects = effectsOf(cases, kUnit, 0.02);
+    CHECK(effect(effects, "density_k=4").base == "balanced estimator=paper");
+    CHECK(effect(effects, "density_k=4").error == Approx(0.25));
+    CHECK(effect(effects, "estimator=paper").base == "balanced");
+    CHECK(effect(effects, "estimator=paper").error == Approx(3.0));
+}
+
 TEST_CASE("an effect changes something when one scene of several shows it", "[sweep]")
 {
     std::vector<Measurement> rows = syntheticSweep(2);
