@@ -54,9 +54,17 @@ int main(int argc, char** argv)
     program.set_version_flag("--version", LRSM_VERSION);
     program.require_subcommand(1);
     program.footer("Exit codes: 0 done, 1 a check failed, 2 bad usage or input, 3 the machine failed us.");
-    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),      lrsm::addRender(program), lrsm::addReference(program),
-                                                 lrsm::addMerge(program), lrsm::addCompare(program), lrsm::addValidate(program), lrsm::addCapture(program), lrsm::addCheck(program),
-                                                 lrsm::addBench(program), lrsm::addSettings(program)};
+    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),
+                                                 lrsm::addRender(program),
+                                                 lrsm::addReference(program),
+                                                 lrsm::addMerge(program),
+                                                 lrsm::addCompare(program),
+                                                 lrsm::addValidate(program),
+                                                 lrsm::addCapture(program),
+                                                 lrsm::addCheck(program),
+                                                 lrsm::addBench(program),
+                                                 lrsm::addSettings(program),
+                                                 lrsm::addTune(program)};
 
     try {
         if (argc > 1 && argv[1][0] != '-') refuseUnknownCommand(program, argv[1]);

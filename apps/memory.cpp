@@ -95,12 +95,15 @@ std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirement
     return rows;
 }
 
+std::size_t frameBytes(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width, int height)
+{
+    return total(predictMemory(settings, needs, layersKept, width, height)) + pictureBytes(width, height);
+}
+
 void enforceMemoryLimit(const Scene& scene, const Requirements& needs, const Settings& settings, int width, int height, double maxMegabytes)
 {
     if (maxMegabytes <= 0.0) return;
-    const auto bytesWith = [&](const std::vector<int>& layers) {
-        return total(predictMemory(settings, needs, layers, width, height)) + pictureBytes(width, height);
-    };
+    const auto bytesWith = [&](const std::vector<int>& layers) { return frameBytes(settings, needs, layers, width, height); };
     const double limit = maxMegabytes * 1e6;
     if (static_cast<double>(bytesWith(std::vector<int>(scene.lights.size(), layersAsked(settings)))) <= limit) return;
     std::size_t needed = bytesWith(std::vector<int>(scene.lights.size(), 1));

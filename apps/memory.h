@@ -27,6 +27,9 @@ std::vector<int> countLayersKept(const Scene& scene, const Requirements& needs, 
 std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width,
                                      int height);
 
+/// All that is held at once while a frame is rendered, its pictures included: what enforceMemoryLimit holds against the limit.
+std::size_t frameBytes(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width, int height);
+
 /// InputError, before anything large is allocated, when the frame needs more than `maxMegabytes` (of 10^6 bytes; 0: no limit). Decides
 /// by bounds where they suffice: one layer a light, then all layers; only between the two are the layers counted.
 void enforceMemoryLimit(const Scene& scene, const Requirements& needs, const Settings& settings, int width, int height, double maxMegabytes);

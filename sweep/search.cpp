@@ -54,12 +54,16 @@ class FrontSearch {
             visitSettings(named, onGrid ? &position : nullptr, false);
         }
         if (isNew(grid_.origin()) && mayGoOn(0)) visit(grid_.origin(), false);
+        // Neighbours of all axes before the ends of any: half of a small budget must do.
+        const auto move = [&](std::size_t axis, int value) {
+            GridPosition position = grid_.origin();
+            position[axis] = value;
+            if (mayGoOn(options_.budget / 2) && isNew(position)) visit(position, true);
+        };
         for (std::size_t axis = 0; axis < grid_.axisCount(); ++axis)
-            for (const int value : {grid_.origin()[axis] - 1, grid_.origin()[axis] + 1, 0, grid_.valueCount(axis) - 1}) {
-                GridPosition position = grid_.origin();
-                position[axis] = value;
-                if (mayGoOn(reservedForChecks()) && isNew(position)) visit(position, true);
-            }
+            for (const int step : {-1, 1}) move(axis, grid_.origin()[axis] + step);
+        for (std::size_t axis = 0; axis < grid_.axisCount(); ++axis)
+            for (const int end : {0, grid_.valueCount(axis) - 1}) move(axis, end);
     }
 
     /// Inside the grid, with a meaning, not visited, and not to be pruned: bounds only ever tighten, so pruned stays pruned.
@@ -82,7 +86,6 @@ class FrontSearch {
         return true;
     }
 
-    /// False when the search has to stop before the point is complete.
     void visit(const GridPosition& position, bool mayAbandon)
     {
         seen_.insert(position);

@@ -14,8 +14,8 @@
 /// The designed search for the front of cost against error over a grid of settings, in the manner of FAISS' ParameterSpace and OperatingPoints (what cannot
 /// win by monotonicity is never rendered), for an error that is not monotone and for several scenes at once.
 ///
-/// Method. Each axis goes from cheap and coarse to costly and fine. Start: the presets and, around the base, the ends and neighbours of each axis. Then one
-/// setting at a time, the most promising of: the neighbours of the front's points (one step up or down on one axis) and crosses of points next to each other on
+/// Method. Each axis goes from cheap and coarse to costly and fine. Start: the presets and, around the base, the neighbours and then the ends of each axis, for at most
+/// half of the budget. Then one setting at a time, the most promising of: the neighbours of the front's points (one step up or down on one axis) and crosses of points next to each other on
 /// the front; promise is how far the predicted point lies below the front, in logarithms (prediction: the nearest visited point, and for each axis step between
 /// the mean effect that this step had where nothing else changed). Every `exploreEvery`-th setting is drawn at random instead, so that the search does not
 /// get stuck.

@@ -31,7 +31,7 @@ class Tuner {
     Tuner(std::vector<TunePoint> points, const TuneRequest& request, const TuneActions& actions) : request_(request), actions_(actions)
     {
         result_.points = std::move(points);
-        result_.scale = timeScale({}, request.calibrationCpu);
+        result_.scale = request.before;
         for (TunePoint& point : result_.points)
             if (request_.budget.megabytes && point.megabytes > *request_.budget.megabytes) point.skipped = "over the memory";
     }
@@ -48,7 +48,10 @@ class Tuner {
             }
             if (!next && mayVerify && probeNext()) continue;
             if (!next) next = nearest();
-            if (!next) break;
+            if (!next) {
+                result_.nearest = leastMemory();
+                break;
+            }
             if (next->verified || !mayVerify) {
                 result_.nearest = next->index;
                 break;
@@ -91,6 +94,15 @@ class Tuner {
         for (const Known& point : known())
             if (!best || excess(point.figures, request_.budget) < excess(best->figures, request_.budget)) best = point;
         return best;
+    }
+
+    /// Where everything is over the memory.
+    std::optional<std::size_t> leastMemory() const
+    {
+        std::optional<std::size_t> least;
+        for (std::size_t i = 0; i < result_.points.size(); ++i)
+            if (!least || result_.points[i].megabytes < result_.points[*least].megabytes) least = i;
+        return least;
     }
 
     void probeUntilEnough()
@@ -154,7 +166,7 @@ class Tuner {
         for (const TunePoint& point : result_.points)
             for (const auto& row : {point.probe, point.verified})
                 if (row) rows.push_back(*row);
-        result_.scale = timeScale(rows, request_.calibrationCpu);
+        result_.scale = timeScale(request_.before, rows);
     }
 
     TuneRequest request_;
@@ -195,14 +207,12 @@ std::uint64_t samplesNeeded(double noise, std::uint64_t samples, double error)
     return power;
 }
 
-TimeScale timeScale(const std::vector<Measurement>& rows, double calibrationCpu)
+TimeScale timeScale(TimeScale scale, const std::vector<Measurement>& rows)
 {
-    TimeScale scale{calibrationCpu, std::numeric_limits<double>::infinity()};
     for (const Measurement& row : rows) {
-        if (row.calibrationCpu > 0.0 && (scale.calibrationCpu <= 0.0 || row.calibrationCpu < scale.calibrationCpu)) scale.calibrationCpu = row.calibrationCpu;
+        if (row.calibrationCpu > 0.0) scale.calibrationCpu = std::min(scale.calibrationCpu, row.calibrationCpu);
         if (row.frameCpu > 0.0) scale.wallPerCpu = std::min(scale.wallPerCpu, row.frame.median / row.frameCpu);
     }
-    if (std::isinf(scale.wallPerCpu)) scale.wallPerCpu = 1.0;
     return scale;
 }
 

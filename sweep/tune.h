@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,14 +34,14 @@ void validate(const TuneBudget& budget);
 /// Samples a pixel that the truth needs before an error of `error` is above its noise: noise falls with their root. A power of two.
 std::uint64_t samplesNeeded(double noise, std::uint64_t samples, double error);
 
-/// What a calibration frame means in milliseconds. Of all runs the fastest counts: other programs can only slow a run.
+/// What a calibration frame means in milliseconds. Of all runs the least counts: other programs can only slow a run.
 struct TimeScale {
-    double calibrationCpu = 0.0;  ///< processor time of the calibration frame, ms
+    double calibrationCpu = std::numeric_limits<double>::infinity();  ///< processor time of the calibration frame, ms; infinite: not run yet
     double wallPerCpu = 1.0;      ///< wall time over processor time of a frame: 1 / threads where they share the work evenly
     double milliseconds(double cost) const { return cost * calibrationCpu * wallPerCpu; }
 };
-/// From rows measured in this process; `calibrationCpu` of the runs made beside them, 0: none.
-TimeScale timeScale(const std::vector<Measurement>& rows, double calibrationCpu);
+/// `before` and what the rows of this process add to it.
+TimeScale timeScale(TimeScale before, const std::vector<Measurement>& rows);
 
 /// Cost of the row's settings at another size: passes over pixels go with their number, the others stay. Their shares are the row's.
 double costAtSize(const Measurement& row, int width, int height);
@@ -62,7 +63,7 @@ struct TuneRequest {
     TuneBudget budget;
     int width = 640, height = 360;  ///< the asked size
     int maxVerifications = 3;       ///< >= 1
-    double calibrationCpu = 0.0;    ///< ms, fastest of the runs before
+    TimeScale before = {};          ///< of calibration frames run beforehand: the fastest, and the least wall time over processor time
     int threads = 1;                ///< that render a frame
 };
 
@@ -74,7 +75,7 @@ struct TuneCorrection {
 struct TuneResult {
     std::vector<TunePoint> points;       ///< in the order given
     std::optional<std::size_t> chosen;   ///< verified, and within the budget
-    std::optional<std::size_t> nearest;  ///< where nothing is: the point whose worst excess is least
+    std::optional<std::size_t> nearest;  ///< where nothing is: the point whose worst excess is least; of the least memory when all are over it
     TuneCorrection correction;
     TimeScale scale;
 };

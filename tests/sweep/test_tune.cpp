@@ -55,7 +55,7 @@ class MadeMachine {
             ++(asked ? verified : probed);
             return m;
         };
-        request.calibrationCpu = 10.0;
+        request.before = {10.0, 1.0};
         request.threads = 2;
         const TuneActions actions = {[&](const NamedSettings& n) { return row(n, false); }, [&](const NamedSettings& n) { return row(n, true); }};
         return tune(points(), request, actions);
