@@ -9,14 +9,14 @@ using TuneJson = nlohmann::json;
 namespace {
 
 // Small pictures, few samples, small maps: each point takes milliseconds.
-const std::string kTiny = "tune cornell-box --size 32x18 --probe 32x18 --spp 128 --set voxel_resolution=32 --set rsm_resolution=32 ";
+const std::string kTinyTune = "tune cornell-box --size 32x18 --probe 32x18 --spp 128 --set voxel_resolution=32 --set rsm_resolution=32 ";
 
 }  // namespace
 
 TEST_CASE("program: tune writes settings that meet the budget, and that render takes", "[apps][tune]")
 {
     Sandbox box;
-    const Outcome run = box.run(kTiny + "--max-error 1 --max-memory 100 -o found.json");
+    const Outcome run = box.run(kTinyTune + "--max-error 1 --max-memory 100 -o found.json");
     REQUIRE(run.code == 0);
     CHECK(contains(run.out, "chosen:"));
     const TuneJson json = TuneJson::parse(readText(box.here() / "found.json"));
@@ -40,13 +40,13 @@ TEST_CASE("program: tune writes settings that meet the budget, and that render t
 TEST_CASE("program: tune says that nothing meets a budget, and writes the nearest only when asked to", "[apps][tune]")
 {
     Sandbox box;
-    const Outcome none = box.run(kTiny + "--max-memory 0.001 -o found.json");
+    const Outcome none = box.run(kTinyTune + "--max-memory 0.001 -o found.json");
     CHECK(none.code == 1);
     CHECK(contains(none.out, "no settings meet this budget"));
     CHECK(contains(none.out, "nearest:"));
     CHECK(box.empty());
 
-    const Outcome nearest = box.run(kTiny + "--max-memory 0.001 --nearest -o found.json");
+    const Outcome nearest = box.run(kTinyTune + "--max-memory 0.001 --nearest -o found.json");
     CHECK(nearest.code == 1);
     CHECK(TuneJson::parse(readText(box.here() / "found.json"))["tune"]["met"] == false);
 }
@@ -56,11 +56,11 @@ TEST_CASE("program: tune refuses what it cannot promise, in one line", "[apps][t
     Sandbox box;
     for (const char* arguments : {"-o found.json", "--max-error 0.1", "--max-error 0 -o found.json", "--max-time soon -o found.json", "--max-time nan -o found.json",
                                   "--max-error 0.1 --metric psnr -o found.json", "--max-error 1e-6 -o found.json", "--max-error 1 --spp 1 -o found.json"}) {
-        const Outcome run = box.run(kTiny + arguments);
+        const Outcome run = box.run(kTinyTune + arguments);
         CAPTURE(arguments, run.err);
         CHECK(run.code == 2);
         CHECK(isOneLine(run.err));
         CHECK(box.empty());
     }
-    CHECK(contains(box.run(kTiny + "--max-error 0.001 -o found.json").err, "--spp"));
+    CHECK(contains(box.run(kTinyTune + "--max-error 0.001 -o found.json").err, "--spp"));
 }
