@@ -50,7 +50,7 @@ Json passesJson(const Frame& frame)
 {
     Json passes = Json::array();
     for (const PassReport& pass : frame.passes)
-        passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}, {"bytes", pass.bytes}, {"gpu_format_bytes", pass.gpuBytes}, {"sha256", pass.sha256}, {"non_finite", pass.nonFinite}});
+        passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}, {"cpu_milliseconds", pass.cpuMilliseconds}, {"bytes", pass.bytes}, {"gpu_format_bytes", pass.gpuBytes}, {"sha256", pass.sha256}, {"non_finite", pass.nonFinite}});
     return passes;
 }
 

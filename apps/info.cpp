@@ -1,6 +1,7 @@
 #include "apps/commands.h"
 #include "apps/common_options.h"
 #include "apps/describe.h"
+#include "apps/describe_analysis.h"
 #include "apps/memory.h"
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -40,19 +41,27 @@ int runInfo(const InfoArguments& options)
     const ThreadLimit threads(options.threads);
     const Scene scene = loadChosenScene(options);
     const Requirements needs = analyseRequirements(scene, settings.force);
-    const auto memory = predictMemory(settings, needs, countLayersKept(scene, needs, settings), size.x, size.y);
+    const SceneAnalysis analysis = analyseScene(scene, chosenCamera(scene, options), needs, settings, size.x, size.y);
+    const std::vector<Advice> advice = adviseSettings(analysis, settings, size.x, size.y);
+    std::vector<int> layersKept;
+    for (const LightAnalysis& light : analysis.lights) layersKept.push_back(light.layers);
+    const auto memory = predictMemory(settings, needs, layersKept, size.x, size.y);
 
     if (options.json) {
         const nlohmann::ordered_json json = {{"version", LRSM_VERSION},
                                              {"scene", sceneJson(scene, hashScene(scene))},
                                              {"requires", requirementsJson(needs)},
                                              {"settings", settingsToJson(settings)},
-                                             {"memory", memoryJson(memory)}};
+                                             {"memory", memoryJson(memory)},
+                                             {"analysis", analysisJson(analysis)},
+                                             {"advice", adviceJson(advice)}};
         std::cout << jsonText(json);
         return 0;
     }
     printScene(std::cout, scene);
     printRequirements(std::cout, needs);
+    printAnalysis(std::cout, analysis);
+    printAdvice(std::cout, advice);
     std::cout << "memory of a frame with these settings, in MB of 10^6 bytes:\n";
     printMemory(std::cout, memory);
     return 0;

@@ -11,9 +11,9 @@
 namespace lrsm {
 namespace {
 
-/// Merging layers that moves less of the light than this is not seen.
-constexpr double kMergedLightLimit = 0.008;
-/// LRSM texels at most this many voxels wide are finer than any tap: the base level is read by nothing.
+/// Depth slices whose merging moves less of the light than this part nothing worth a layer.
+constexpr double kMergedDepthLimit = 0.008;
+/// LRSM texels at most this fraction of the finest tap wide: every tap reads level 1 or coarser.
 constexpr double kFineMap = 0.5;
 /// Voxels so many times finer than the LRSM's texels resolve nothing that the light's map holds.
 constexpr double kFineVoxels = 1.5;
@@ -54,12 +54,12 @@ class Adviser {
     {
     }
 
-    void add(const std::string& key, const std::string& from, const std::string& to, const std::string& why)
+    void add(const std::string& key, const std::string& from, const std::string& to, const std::string& why, bool bitsEqual = false)
     {
         Settings changed = settings_;
         applySetting(changed, key + "=" + to);
         const std::vector<int> layers = layersOf(changed);
-        advice.push_back({key, from, to, why, false,
+        advice.push_back({key, from, to, why, bitsEqual,
                           frameWork(analysis_, changed, layers, width_, height_) / frameWork(analysis_, settings_, layers_, width_, height_),
                           frameBytes(analysis_, changed, layers, width_, height_) / frameBytes(analysis_, settings_, layers_, width_, height_)});
     }
@@ -98,20 +98,16 @@ double largest(const std::vector<LightAnalysis>& lights, const Value& value)
 
 void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
-    const double depth = largest(analysis.lights, [](const LightAnalysis& light) { return light.merged.depth; });
-    const double normal = largest(analysis.lights, [](const LightAnalysis& light) { return light.merged.normal; });
-    const bool severalDepths = largest(analysis.lights, [](const LightAnalysis& light) { return light.depthSlices - 1.0; }) > 0.0;
-    const bool severalNormals = largest(analysis.lights, [](const LightAnalysis& light) { return light.normalSlices - 1.0; }) > 0.0;
-    if (settings.layers.depthLayers > 1 && severalDepths && depth < kMergedLightLimit)
-        adviser.add("depth_layers", settings.layers.depthLayers, 1, brief("read through one layer, %.2g %% of the light moves in depth", 100.0 * depth));
-    if (settings.layers.normalLayers > 1 && severalNormals && normal < kMergedLightLimit)
-        adviser.add("normal_layers", settings.layers.normalLayers, 1, brief("read through one layer, %.2g %% of the light turns", 100.0 * normal));
+    const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.merged.depth; });
+    const double slices = largest(analysis.lights, [](const LightAnalysis& light) { return double(light.depthSlices); });
+    if (settings.layers.depthLayers > 1 && slices > 1.0 && moved < kMergedDepthLimit)
+        adviser.add("depth_layers", settings.layers.depthLayers, 1, brief("read through one layer, %.2g %% of the light moves in depth", 100.0 * moved));
 }
 
 /// Texels of the light's map against the voxels: the finer of the two is wasted.
 void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
-    const double coarsest = largest(analysis.lights, [](const LightAnalysis& light) { return light.texelSizeLargest; }) / analysis.finestTap;
+    const double coarsest = largest(analysis.lights, [](const LightAnalysis& light) { return light.texelSize; }) / analysis.finestTap;
     double finest = kFineVoxels * 1e6;
     for (const LightAnalysis& light : analysis.lights)
         if (light.litTexels > 0) finest = std::min(finest, light.texelSize / analysis.finestTap);
@@ -120,7 +116,7 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
     int texels = settings.rsm.resolution;
     for (double ratio = coarsest; ratio <= kFineMap && texels > kLeastResolution; ratio *= 2.0) texels /= 2;
     if (texels < settings.rsm.resolution)
-        adviser.add("rsm_resolution", settings.rsm.resolution, texels, brief("LRSM texels are at most %.2g of the finest tap wide: finer levels than the taps are read by nothing", coarsest));
+        adviser.add("rsm_resolution", settings.rsm.resolution, texels, brief("LRSM texels are %.2g of the finest tap wide: next to nothing reads the base level", coarsest));
 
     int voxels = settings.voxel.resolution;
     float start = settings.cones.startVoxels;
@@ -139,6 +135,8 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
 std::vector<Advice> adviseSettings(const SceneAnalysis& analysis, const Settings& settings, int width, int height)
 {
     Adviser adviser(analysis, settings, width, height);
+    if (settings.force.everything) adviser.add("force_everything", "true", "false", "it is for tests of the analysis", true);
+    if (!settings.layers.dropEmpty) adviser.add("drop_empty", "false", "true", "layers without a lit texel send nothing", true);
     adviseLayers(analysis, settings, adviser);
     adviseResolutions(analysis, settings, adviser);
     return adviser.advice;

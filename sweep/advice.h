@@ -33,8 +33,7 @@ struct MergedLight {
     double depth = 0.0;   ///< depth slices merged into one
     double normal = 0.0;  ///< <n.l> slices merged into one
 };
-/// At the level whose texels are nearest to `tapWidth` metres wide.
-MergedLight mergedLight(const Lrsm& lrsm, double tapWidth);
+MergedLight mergedLight(const Lrsm& lrsm, int level);
 
 /// One light's map, as cones read it.
 struct LightAnalysis {
@@ -54,7 +53,7 @@ struct SceneAnalysis {
     std::vector<LightAnalysis> lights;
     double voxelSize = 0.0;   ///< metres
     double finestTap = 0.0;   ///< metres, narrowest tap of any diffuse cone
-    double mapTap = 0.0;      ///< metres, the tap at which layers are compared: kMapTapVoxels voxels
+    double mapTap = 0.0;      ///< metres, the tap at whose LRSM level layers are merged for comparison: kMapTapVoxels voxels
     int voxelLevels = 0, voxelLevelsRead = 0;  ///< of the pyramid; how many of them a diffuse cone can read
     double coneStart = 0.0;   ///< metres to a cone's first voxel tap
     double pixelFootprint[3] = {};  ///< metres, edge of a pixel across the viewing axis at the visible surfaces: 5th, 50th, 95th percentile

@@ -132,7 +132,8 @@ LightAnalysis analyseLight(const Light& light, const Rsm& rsm, const Lrsm& lrsm,
     out.texelSize = rank(0.5);
     out.texelSizeLargest = rank(0.95);
     out.clusters = depthClusters(std::move(lit), partedGap(finestTap));
-    out.merged = mergedLight(lrsm, mapTap);
+    const int level = static_cast<int>(std::floor(log2Exact(mapTap / out.texelSize) + 0.5));
+    out.merged = mergedLight(lrsm, std::clamp(level, 0, lrsm.levels() - 1));
     return out;
 }
 
@@ -201,24 +202,17 @@ std::vector<DepthCluster> depthClusters(std::vector<float> depths, double gap)
     return clusters;
 }
 
-MergedLight mergedLight(const Lrsm& lrsm, double tapWidth)
+MergedLight mergedLight(const Lrsm& lrsm, int level)
 {
     MergedLight out;
-    if (lrsm.layers() == 0) return out;
     const double range = double(lrsm.projection.depthRange());
-
-    // The level by the map's middle distance: one level a map is enough for a share of its light.
-    const double middle = 0.5 * range * double(lrsm.ranges.front().depthMin + lrsm.ranges.back().depthMax);
-    const double base = texelEdge(lrsm.projection, lrsm.baseResolution, lrsm.baseResolution / 2, lrsm.baseResolution / 2, middle);
-    const int lod = std::clamp(static_cast<int>(std::floor(log2Exact(tapWidth / base) + 0.5)), 0, lrsm.levels() - 1);
-
     double all = 0.0;
-    const int n = lrsm.resolutionAt(lod);
+    const int n = lrsm.resolutionAt(level);
     std::vector<LayerTexel> texel(static_cast<std::size_t>(lrsm.layers()));
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             for (int layer = 0; layer < lrsm.layers(); ++layer)
-                texel[std::size_t(layer)] = layerTexel(lrsm.level(layer, lod)[std::size_t(y) * std::size_t(n) + std::size_t(x)], lrsm.ranges[std::size_t(layer)], range);
+                texel[std::size_t(layer)] = layerTexel(lrsm.level(layer, level)[std::size_t(y) * std::size_t(n) + std::size_t(x)], lrsm.ranges[std::size_t(layer)], range);
             for (std::size_t i = 0; i < texel.size(); ++i) {
                 const LayerTexel& one = texel[i];
                 if (!(one.radiance > 0.0)) continue;
