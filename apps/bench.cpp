@@ -2,6 +2,7 @@
 #include "apps/commands.h"
 #include "apps/common_options.h"
 #include "apps/describe.h"
+#include "apps/interrupts.h"
 #include "apps/progress.h"
 #include "core/base/check.h"
 #include "core/base/output_folder.h"
@@ -104,18 +105,25 @@ int runBench(const BenchArguments& options)
     const nlohmann::ordered_json machine = machineJson();
     Progress progress(options.quiet);
     std::vector<MeasuredAxis> measured;
+    const CatchInterrupts catching;
     for (const std::string& name : names) {
         progress.show(name, 0.0);
         ScalingAxis axis = makeScalingAxis(name, base);
         const TimeLeft left;
-        const ScalingRun run = runScaling(axis, options.repeat, [&](const ScalingSample& sample) { rows.write(benchCsvRow(axis, sample)); },
-                                          [&](const std::string& what, double fraction) { progress.show(what + left.at(fraction), fraction); });
+        const ScalingWatch watch = {[&](const ScalingSample& sample) { rows.write(benchCsvRow(axis, sample)); },
+                                    [&](const std::string& what, double fraction) { progress.show(what + left.at(fraction), fraction); },
+                                    [&] { return catching.asked().load(); }};
+        const ScalingRun run = runScaling(axis, options.repeat, watch);
         ScalingResult result = summarizeScaling(axis, run.samples);
         for (ScalingPoint& point : axis.points) point.scene.reset();  // millions of triangles
         measured.push_back({std::move(axis), std::move(result), run.leftOut});
         progress.clear();
         writeSummary(options.output, measured, machine, options.repeat);
         if (!options.quiet && !options.json) printAxis(measured.back());
+        if (catching.asked()) {
+            std::cerr << "lrsm: interrupted; what was measured is in " << options.output << std::endl;
+            return kInterruptedCode;
+        }
     }
     if (options.json) std::cout << jsonText(benchJson(measured, machine, options.repeat));
     else if (!options.quiet) std::cout << "\n" << options.output << ": bench.csv, bench.json, bench.html\n";

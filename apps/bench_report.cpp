@@ -4,6 +4,7 @@
 #include "core/report/html.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -79,15 +80,22 @@ Chart scalingChart(const MeasuredAxis& measured)
     chart.xLabel = measured.axis.xLabel;
     chart.yLabel = "ms (median)";
     chart.logX = chart.logY = true;
-    const ScalingCurve* driven = drivenCurve(measured);
-    for (const ScalingCurve* curve : {measured.result.find("frame_cpu_ms"), measured.axis.name == "threads" ? measured.result.find("frame_ms") : nullptr, driven}) {
+    constexpr std::array<const char*, 4> kColours = {"#4477aa", "#ee6677", "#228833", "#ccbb44"};
+    std::vector<std::string> shown = {"frame_cpu_ms"};
+    for (const ScalingExpectation& expected : measured.axis.expected)
+        if (isTimeSeries(expected.series) && expected.series != shown.front() && shown.size() < kColours.size()) shown.push_back(expected.series);
+    for (std::size_t s = 0; s < shown.size(); ++s) {
+        const ScalingCurve* curve = measured.result.find(shown[s]);
         if (!curve) continue;
         ChartSeries points{curve->series, measured.result.x, curve->median, {}, false, false};
+        points.colour = kColours[s];
         for (std::size_t i = 0; i < measured.result.points.size(); ++i)
             points.hover.push_back(measured.axis.points[measured.result.points[i]].label + ", spread " + fixedNumber(100.0 * curve->spread[i], 0) + " %");
         chart.series.push_back(std::move(points));
         if (!curve->power) continue;
         ChartSeries line{"x^" + fixedNumber(curve->power->exponent, 2), measured.result.x, {}, {}, true, true};
+        line.colour = kColours[s];
+        line.markerSize = 0.0;
         for (const double x : measured.result.x) line.y.push_back(curve->power->at(x));
         chart.series.push_back(std::move(line));
     }

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Plots for docs/, from what the program measured.
 
-    scripts/plots.py scaling BENCH_DIR DOCS_IMAGES    scaling-AXIS.png for each axis of `lrsm bench -o BENCH_DIR`, and the tables of docs/performance.md
-                                                      on standard output
-    scripts/plots.py front SWEEP.csv OUT.png          error against cost of `lrsm sweep`, a panel a scene
+    scripts/plots.py scaling BENCH_DIR IMAGES [PAGE]    scaling-AXIS.png for each axis of `lrsm bench -o BENCH_DIR`; the table of exponents goes
+                                                        between the marks of PAGE (docs/performance.md), or to standard output
+    scripts/plots.py front SWEEP.csv OUT.png            error against cost of `lrsm sweep`, a panel a scene
 
 Needs matplotlib: apt-get install python3-matplotlib. Neither the program nor its tests do.
 """
@@ -126,8 +126,7 @@ def offset_text(curve):
 
 
 def markdown_table(axes):
-    print("| axis | what | measured exponent | a + b x^p | expected | because |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    table = ["| axis | what | measured exponent | a + b x^p | expected | because |", "| --- | --- | --- | --- | --- | --- |"]
     for axis in axes:
         curves = {curve["series"]: curve for curve in axis["curves"]}
         name = f"`{axis['name']}`"
@@ -137,8 +136,9 @@ def markdown_table(axes):
                 continue
             fit = curve["power"]
             error = f" +- {fit['standard_error']:.2f}" if len(axis["x"]) > 2 and expected["series"].endswith("_ms") else ""
-            print(f"| {name} | {readable(expected['series'])} | {fit['exponent']:.2f}{error} | {offset_text(curve)} | {expected_text(expected)} | {expected['why']} |")
+            table.append(f"| {name} | {readable(expected['series'])} | {fit['exponent']:.2f}{error} | {offset_text(curve)} | {expected_text(expected)} | {expected['why']} |")
             name = ""
+    return "\n".join(table)
 
 
 def machine_text(bench):
@@ -149,15 +149,30 @@ def machine_text(bench):
             f"load average {load(machine['load'])} before and {load(bench['load_at_end'])} after; medians of {bench['repeat']}.")
 
 
-def scaling(folder, images):
+BEGIN, END = "<!-- scaling: begin -->\n", "<!-- scaling: end -->\n"
+
+
+def replace_between_marks(page, text):
+    with open(page) as file:
+        old = file.read()
+    if BEGIN not in old or END not in old:
+        sys.exit(f"{page}: has no lines {BEGIN.strip()} and {END.strip()}")
+    with open(page, "w") as file:
+        file.write(old[: old.index(BEGIN)] + BEGIN + text + old[old.index(END):])
+
+
+def scaling(folder, images, page=None):
     with open(os.path.join(folder, "bench.json")) as file:
         bench = json.load(file)
     rows = medians_from_rows(folder)
     os.makedirs(images, exist_ok=True)
     for axis in bench["axes"]:
         plot_axis(axis, rows, os.path.join(images, f"scaling-{axis['name']}.png"))
-    print(machine_text(bench) + "\n")
-    markdown_table(bench["axes"])
+    text = machine_text(bench) + "\n\n" + markdown_table(bench["axes"]) + "\n"
+    if page:
+        replace_between_marks(page, text)
+    else:
+        print(text, end="")
 
 
 # --- Error against cost ---
@@ -184,8 +199,8 @@ def plot_scene(plot, name, rows, x_key, y_key):
         listed = [(number(row, x_key), number(row, y_key), row["label"]) for row in chosen]
         return [point for point in listed if point[0] > 0 and point[1] > 0]
 
-    settings = points(row for row in rows if row["kind"] not in ("path_tracer", "pathTracer", "path tracer"))
-    tracer = sorted(points(row for row in rows if row["kind"] in ("path_tracer", "pathTracer", "path tracer")))
+    settings = points(row for row in rows if row["kind"] != "path_tracer")
+    tracer = sorted(points(row for row in rows if row["kind"] == "path_tracer"))
     plot.plot([p[0] for p in settings], [p[1] for p in settings], "o", markersize=2.5, color="#bbbbbb", label="settings")
     front = pareto(settings)
     plot.plot([p[0] for p in front], [p[1] for p in front], "-o", markersize=3.5, linewidth=1.2, color=COLOURS[0], drawstyle="steps-post", label="front")
@@ -220,7 +235,7 @@ def front(table, output, x_key="cost", y_key="net"):
         plot_scene(plot, scene, scene_rows, x_key, y_key)
     for plot in flat[len(cases):]:
         plot.set_visible(False)
-    for plot in plots[-1]:
+    for plot in flat:
         plot.set_xlabel({"cost": "cost, calibration frames"}.get(x_key, x_key.replace("_", " ")))
     for line in plots:
         line[0].set_ylabel({"net": "RMSE / mean, noise removed"}.get(y_key, y_key))
@@ -234,6 +249,7 @@ def main():
     one = commands.add_parser("scaling", help="plots and table of lrsm bench")
     one.add_argument("folder")
     one.add_argument("images")
+    one.add_argument("page", nargs="?", help="markdown whose table between the marks is replaced")
     two = commands.add_parser("front", help="error against cost of lrsm sweep")
     two.add_argument("table")
     two.add_argument("output")
@@ -241,7 +257,7 @@ def main():
     two.add_argument("--y", default="net", help="column: net, rmse, flip ...")
     chosen = parser.parse_args()
     if chosen.command == "scaling":
-        scaling(chosen.folder, chosen.images)
+        scaling(chosen.folder, chosen.images, chosen.page)
     else:
         front(chosen.table, chosen.output, chosen.x, chosen.y)
 

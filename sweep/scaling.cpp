@@ -2,6 +2,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "sweep/measurement.h"
 
 #include <algorithm>
 #include <array>
@@ -11,14 +12,14 @@
 namespace lrsm {
 namespace {
 
-constexpr std::array<const char*, 9> kScalingPasses = {"voxelize", "voxel mips", "rsm", "lrsm", "gbuffer", "direct", "cones", "filter", "composite"};
 constexpr std::array<const char*, 3> kColumnsOfPass = {"_cpu_ms", "_ms", "_bytes"};
 
 /// "rsm 3" is one of the light's passes "rsm".
 std::size_t passIndex(const std::string& name)
 {
-    for (std::size_t i = 0; i < kScalingPasses.size(); ++i) {
-        const std::string pass = kScalingPasses[i];
+    const std::vector<std::string>& passes = measuredPasses();
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        const std::string& pass = passes[i];
         if (name == pass || (name.starts_with(pass + " ") && name.find_first_not_of("0123456789", pass.size() + 1) == std::string::npos)) return i;
     }
     throw std::logic_error("pass \"" + name + "\" has no column");
@@ -27,19 +28,12 @@ std::size_t passIndex(const std::string& name)
 std::vector<std::string> makeSeriesNames()
 {
     std::vector<std::string> names = {"frame_cpu_ms", "frame_ms"};
-    for (std::string pass : kScalingPasses) {
+    for (std::string pass : measuredPasses()) {
         std::replace(pass.begin(), pass.end(), ' ', '_');
         for (const char* what : kColumnsOfPass) names.push_back(pass + what);
     }
     for (const char* name : {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept", "bytes", "gpu_bytes"}) names.emplace_back(name);
     return names;
-}
-
-double middleOf(std::vector<double> values)
-{
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 ScalingSample renderPoint(const ScalingAxis& axis, std::size_t index, int repeat)
@@ -61,11 +55,10 @@ ScalingCurve curveOf(const std::string& name, std::size_t series, const std::vec
     for (const auto& samples : byPoint) {
         std::vector<double> values;
         for (const ScalingSample* sample : samples) values.push_back(sample->values[series]);
-        const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
-        const double median = middleOf(values);
-        curve.median.push_back(median);
-        curve.min.push_back(*smallest);
-        curve.spread.push_back(median > 0.0 ? (*largest - *smallest) / median : 0.0);
+        const RepeatedTime repeats = summarize(std::move(values));
+        curve.median.push_back(repeats.median);
+        curve.min.push_back(repeats.min);
+        curve.spread.push_back(repeats.spread);
     }
     curve.power = fitPower(x, curve.median);
     curve.offset = fitOffsetPower(x, curve.median);
@@ -96,12 +89,12 @@ bool isTimeSeries(const std::string& name)
 std::vector<double> scalingValues(const Frame& frame)
 {
     double frameCpu = 0.0, frameWall = 0.0;
-    std::array<std::array<double, 3>, kScalingPasses.size()> passes{};
+    std::vector<std::array<double, kColumnsOfPass.size()>> passes(measuredPasses().size());
     std::size_t bytes = 0, gpuBytes = 0;
     for (const PassReport& pass : frame.passes) {
         frameCpu += pass.cpuMilliseconds;
         frameWall += pass.milliseconds;
-        std::array<double, 3>& sums = passes[passIndex(pass.name)];
+        std::array<double, kColumnsOfPass.size()>& sums = passes[passIndex(pass.name)];
         sums[0] += pass.cpuMilliseconds;
         sums[1] += pass.milliseconds;
         sums[2] += static_cast<double>(pass.bytes);
@@ -123,8 +116,7 @@ std::vector<double> scalingValues(const Frame& frame)
     return values;
 }
 
-ScalingRun runScaling(const ScalingAxis& axis, int repeat, const std::function<void(const ScalingSample&)>& each,
-                      const std::function<void(const std::string& what, double fraction)>& progress)
+ScalingRun runScaling(const ScalingAxis& axis, int repeat, const ScalingWatch& watch)
 {
     ScalingRun run;
     std::set<std::size_t> tooLarge;
@@ -134,7 +126,8 @@ ScalingRun runScaling(const ScalingAxis& axis, int repeat, const std::function<v
     for (int i = 0; i < repeat; ++i)
         for (std::size_t point = 0; point < axis.points.size(); ++point, done += 1.0) {
             if (tooLarge.count(point)) continue;
-            if (progress) progress(axis.name + " " + axis.points[point].label, done / frames);
+            if (watch.stop && watch.stop()) return run;
+            if (watch.progress) watch.progress(axis.name + " " + axis.points[point].label, done / frames);
             try {
                 run.samples.push_back(renderPoint(axis, point, i));
             } catch (const MachineError& error) {
@@ -142,7 +135,7 @@ ScalingRun runScaling(const ScalingAxis& axis, int repeat, const std::function<v
                 run.leftOut.push_back(axis.points[point].label + ": " + error.what());
                 continue;
             }
-            if (each) each(run.samples.back());
+            if (watch.each) watch.each(run.samples.back());
         }
     return run;
 }

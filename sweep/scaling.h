@@ -76,9 +76,13 @@ struct ScalingRun {
 };
 
 /// Renders every point `repeat` times, round robin: a slow minute of the machine hits all points alike. The first point is rendered once before,
-/// unmeasured. `each` is called with every sample as it comes, `progress` with the fraction done.
-ScalingRun runScaling(const ScalingAxis& axis, int repeat, const std::function<void(const ScalingSample&)>& each,
-                      const std::function<void(const std::string& what, double fraction)>& progress);
+/// unmeasured.
+struct ScalingWatch {
+    std::function<void(const ScalingSample&)> each = {};  ///< every sample as it comes
+    std::function<void(const std::string& what, double fraction)> progress = {};
+    std::function<bool()> stop = {};  ///< asked before each frame: end with what there is?
+};
+ScalingRun runScaling(const ScalingAxis& axis, int repeat, const ScalingWatch& watch = {});
 
 /// One series over an axis.
 struct ScalingCurve {

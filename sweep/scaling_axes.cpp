@@ -174,8 +174,8 @@ ScalingAxis voxelsAxis(const ScalingBase& base)
     }
     maker.expect("voxel_mips_cpu_ms", 2, 3, "3 for the volume, 2 for the bricks that hold a surface");
     maker.expect("voxel_mips_bytes", 3, 3, "a dense pyramid");
-    maker.expect("voxelize_cpu_ms", 0, 2, "surfaces are covered by n^2 voxels");
-    maker.expect("voxels_set", 2, 2, "the same");
+    maker.expect("voxelize_cpu_ms", 0, 3, "triangles, n^2 voxels of their surfaces, n^3 bits to clear");
+    maker.expect("voxels_set", 2, 2, "surfaces");
     maker.expect("cone_steps", 0, 0.3, "spheres grow with distance: log n steps, which has no exponent; about 1 / log of the steps");
     maker.expect("cones_cpu_ms", 0, 0.5, "log n steps, and more memory than caches");
     maker.expect("frame_cpu_ms", 0, 3, "mips grow, cones hardly");
@@ -191,7 +191,7 @@ ScalingAxis rsmAxis(const ScalingBase& base)
         maker.add(point);
     }
     maker.expect("rsm_cpu_ms", 0, 2, "texels grow, triangles do not");
-    maker.expect("lrsm_cpu_ms", 2, 2, "texels");
+    maker.expect("lrsm_cpu_ms", 2, 2, "texels; dearer ones once they are more than caches hold");
     maker.expect("lrsm_bytes", 2, 2, "texels");
     maker.expect("cone_steps", 0, 0, "steps know nothing of the maps");
     maker.expect("cones_cpu_ms", 0, 0.3, "the same lookups, in more memory");

@@ -28,7 +28,7 @@ ScalingBase tinyBase(const char* scene = "atrium")
 ScalingResult measured(const std::string& name, const ScalingBase& base)
 {
     const ScalingAxis axis = makeScalingAxis(name, base);
-    return summarizeScaling(axis, runScaling(axis, 1, {}, {}).samples);
+    return summarizeScaling(axis, runScaling(axis, 1).samples);
 }
 
 double exponentOf(const ScalingResult& result, const std::string& series)
@@ -135,7 +135,7 @@ TEST_CASE("scaling: steps are linear in cones of one aperture, and more than lin
         axis.points[i].settings.cones.count = 32 << i;
         axis.points[i].x = 32 << i;
     }
-    const ScalingResult cones = summarizeScaling(axis, runScaling(axis, 1, {}, {}).samples);
+    const ScalingResult cones = summarizeScaling(axis, runScaling(axis, 1).samples);
     CHECK(exponentOf(cones, "cones") == Approx(1.0).margin(1e-12));
     CHECK(exponentOf(cones, "cone_steps") > 1.2);
     CHECK(exponentOf(cones, "cone_steps") < 1.55);
@@ -150,7 +150,7 @@ TEST_CASE("scaling: steps grow with the logarithm of voxel resolution, memory wi
     finest.settings.voxel.resolution = 128;
     finest.x = 128;
     axis.points.push_back(finest);
-    const ScalingResult voxels = summarizeScaling(axis, runScaling(axis, 1, {}, {}).samples);
+    const ScalingResult voxels = summarizeScaling(axis, runScaling(axis, 1).samples);
     const std::vector<double>& steps = voxels.find("cone_steps")->median;
     REQUIRE(steps.size() == 4);
     // As many more steps with each doubling; a power law would have grown by its factor.
@@ -191,14 +191,23 @@ TEST_CASE("scaling: frames go round robin, each is told as it comes, medians are
     const ScalingAxis axis = makeScalingAxis("sets", tinyBase());
     std::vector<std::pair<int, std::size_t>> order;
     double last = -1.0;
-    const ScalingRun run = runScaling(axis, 3, [&](const ScalingSample& sample) { order.emplace_back(sample.repeat, sample.point); },
-                                      [&](const std::string&, double fraction) {
-                                          CHECK(fraction > last);
-                                          last = fraction;
-                                      });
+    ScalingWatch watch;
+    watch.each = [&](const ScalingSample& sample) { order.emplace_back(sample.repeat, sample.point); };
+    watch.progress = [&](const std::string&, double fraction) {
+        CHECK(fraction > last);
+        last = fraction;
+    };
+    const ScalingRun run = runScaling(axis, 3, watch);
     CHECK(order == std::vector<std::pair<int, std::size_t>>{{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}});
     CHECK(last < 1.0);
     for (const ScalingSample& sample : run.samples) CHECK(sample.values.size() == scalingSeriesNames().size());
+
+    // Stopped after two frames: those stay, and make a result.
+    watch.progress = {};
+    watch.stop = [&] { return order.size() >= 11; };
+    const ScalingRun stopped = runScaling(axis, 3, watch);
+    CHECK(stopped.samples.size() == 2);
+    CHECK(summarizeScaling(axis, stopped.samples).points == std::vector<std::size_t>{0, 1});
 
     std::vector<ScalingSample> made = run.samples;
     const std::size_t series = scalingSeriesIndex("frame_cpu_ms");
@@ -214,7 +223,7 @@ TEST_CASE("scaling: frames go round robin, each is told as it comes, medians are
 TEST_CASE("scaling: the frame's times and bytes are sums of its passes", "[sweep][scaling]")
 {
     const ScalingAxis axis = makeScalingAxis("lights", tinyBase());
-    const ScalingRun run = runScaling(axis, 1, {}, {});
+    const ScalingRun run = runScaling(axis, 1);
     for (const ScalingSample& sample : run.samples) {
         double cpu = 0.0, wall = 0.0, bytes = 0.0;
         for (const std::string& name : scalingSeriesNames()) {
