@@ -207,23 +207,16 @@ SweepPictures loadThumbnails(const std::vector<CaseRows>& cases, const CombinedC
         const auto size = fs::file_size(fileOf(key), error);
         return error ? 0 : static_cast<std::size_t>(size);
     };
-    const auto keysOf = [&](const std::vector<const Measurement*>& rows) {
-        std::vector<std::string> keys;
-        for (const CaseRows& one : cases) keys.push_back(one.caseKey);
-        for (const Measurement* row : rows) keys.push_back(row->key);
-        return keys;
-    };
-    std::vector<const Measurement*> wanted = mostWanted(cases, all), every = wanted;
-    for (const CaseRows& one : cases) addShown(every, one.settings);
+    std::vector<const Measurement*> rows = mostWanted(cases, all);
+    for (const CaseRows& one : cases) addShown(rows, one.settings);
+    std::vector<std::string> keys;
+    for (const CaseRows& one : cases) keys.push_back(one.caseKey);
+    for (const Measurement* row : rows) keys.push_back(row->key);
     SweepPictures pictures;
-    std::size_t sum = 0, held = 0;
-    for (const std::string& key : keysOf(every)) {
+    std::size_t held = 0;
+    for (const std::string& key : keys) {
         const std::size_t size = sizeOf(key);
         pictures.found += size > 0 ? 1 : 0;
-        sum += size;
-    }
-    for (const std::string& key : keysOf(sum <= budget ? every : wanted)) {
-        const std::size_t size = sizeOf(key);
         if (size == 0 || held + size > budget) continue;
         held += size;
         const std::vector<unsigned char> bytes = readFile(fileOf(key).string());

@@ -20,7 +20,7 @@ struct SweepPictures {
     std::vector<int> of(const Measurement& row) const;
     std::vector<int> truthOf(const Measurement& row) const;
 };
-/// Those of DIR/thumbnails; where they sum to more than `budget` bytes, first of fronts, presets and path tracer, and no more than the budget holds.
+/// Those of DIR/thumbnails, as many as `budget` bytes hold: first the truths', then those of presets, fronts and path tracer.
 SweepPictures loadThumbnails(const std::vector<CaseRows>& cases, const CombinedCases& all, const std::string& directory, std::size_t budget);
 
 /// Error against time and memory.

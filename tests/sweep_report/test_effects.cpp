@@ -112,6 +112,13 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     CHECK(coarse.percentPerMs == Approx(10.0 / 50.0));
     CHECK(coarse.bytes == Approx(-0.8));
 
+    // What counts as no change of time decides between two verdicts.
+    const std::vector<Effect> tolerant = effectsOf(cases, kUnit, 0.3);
+    CHECK(effect(tolerant, "cone_count=9").kind == EffectKind::winsBoth);
+    CHECK(effect(tolerant, "cone_count=12").kind == EffectKind::buys);
+    CHECK(effect(tolerant, "cone_count=4").kind == EffectKind::losesBoth);
+    CHECK(effect(tolerant, "voxel_resolution=256").kind == EffectKind::saves);
+
     CHECK(costNoise(cases) == Approx(0.01));
     CHECK(costNoise(casesOf({})) == 0.0);
 }
