@@ -90,7 +90,7 @@ def plot_axis(axis, rows, path):
         curve = curves[series]
         spans = [rows[(axis["name"], label, series)] for label in axis["labels"]]
         errors = [[median - min(span) for median, span in zip(curve["median"], spans)], [max(span) - median for median, span in zip(curve["median"], spans)]]
-        label = readable(series)
+        label = readable(series) + (" (processor)" if axis["name"] == "threads" and series.endswith("_cpu_ms") else "")
         if curve["power"]:
             label += f"  $x^{{{curve['power']['exponent']:.2f}}}$"
             if offset_text(curve):
@@ -106,7 +106,7 @@ def plot_axis(axis, rows, path):
         plot.set_xticks([], minor=True)
     plot.set_yscale("log")
     plot.set_xlabel(axis["x_label"])
-    plot.set_ylabel("wall ms" if axis["name"] == "threads" else "processor ms")
+    plot.set_ylabel("ms" if axis["name"] == "threads" else "processor ms")
     plot.set_title(axis["fixed"], fontsize=7)
     style(plot)
     plot.legend(fontsize=8, frameon=False)
