@@ -21,6 +21,7 @@ Command addMerge(CLI::App& program);
 Command addReference(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addSettings(CLI::App& program);
+Command addSweep(CLI::App& program);
 Command addTune(CLI::App& program);
 Command addValidate(CLI::App& program);
 

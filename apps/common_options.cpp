@@ -21,15 +21,28 @@ bool parsePair(const std::string& text, char separator, IVec2& pair)
     return first.ec == std::errc() && first.ptr == middle && second.ec == std::errc() && second.ptr == end;
 }
 
-}  // namespace
+constexpr const char* kSceneHelp = "a .gltf, .glb or view .json file, or a built-in scene (lrsm info --list)";
 
-void addSceneOptions(CLI::App& parser, CommonOptions& options)
+void addViewOptions(CLI::App& parser, CommonOptions& options)
 {
-    parser.add_option("SCENE", options.scene, "a .gltf, .glb or view .json file, or a built-in scene (lrsm info --list)");
     parser.add_option("--view", options.view, "view file: scene, camera and lights");
     parser.add_option("--camera", options.camera, "camera by name or index");
     parser.add_option("--time", options.time, "seconds into the animation");
     parser.add_option("--animation", options.animation, "index of the animation; -1: none");
+}
+
+}  // namespace
+
+void addSceneOptions(CLI::App& parser, CommonOptions& options)
+{
+    parser.add_option("SCENE", options.scene, kSceneHelp);
+    addViewOptions(parser, options);
+}
+
+void addScenesOptions(CLI::App& parser, CommonOptions& options, std::vector<std::string>& scenes)
+{
+    parser.add_option("SCENE", scenes, std::string(kSceneHelp) + "; several are allowed");
+    addViewOptions(parser, options);
 }
 
 void addSettingOptions(CLI::App& parser, CommonOptions& options)

@@ -30,6 +30,8 @@ struct CommonOptions {
 };
 
 void addSceneOptions(CLI::App& parser, CommonOptions& options);
+/// The same for several scenes, which share view, camera and time; `scene` is theirs in turn.
+void addScenesOptions(CLI::App& parser, CommonOptions& options, std::vector<std::string>& scenes);
 void addSettingOptions(CLI::App& parser, CommonOptions& options);
 void addPictureOptions(CLI::App& parser, CommonOptions& options);
 void addRunOptions(CLI::App& parser, CommonOptions& options);

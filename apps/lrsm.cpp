@@ -64,6 +64,7 @@ int main(int argc, char** argv)
                                                  lrsm::addCheck(program),
                                                  lrsm::addBench(program),
                                                  lrsm::addSettings(program),
+                                                 lrsm::addSweep(program),
                                                  lrsm::addTune(program)};
 
     try {

@@ -1,0 +1,133 @@
+#include "catch.h"
+#include "sandbox.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+// lrsm sweep as a user meets it.
+
+using namespace lrsm::test;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// The presets need more memory than this, and are skipped: they take too long here.
+const std::string kTiny = "sweep cornell-box --size 32x18 --spp 16 --path-tracer 4 --repeat 1 --max-memory 3 --set voxel_resolution=32 --set rsm_resolution=64 ";
+
+std::map<std::string, Json> rowsOf(const fs::path& folder)
+{
+    std::map<std::string, Json> rows;
+    std::istringstream lines(readText(folder / "rows.jsonl"));
+    for (std::string line; std::getline(lines, line);) {
+        const Json row = Json::parse(line);
+        CHECK(rows.emplace(row["key"], row).second);  // none is doubled
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("program: sweep keeps a row a setting and scene with its picture, and writes all its files", "[apps][sweep]")
+{
+    const Sandbox box;
+    const Outcome made = box.run(kTiny + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab");
+    INFO(made.err);
+    REQUIRE(made.code == 0);
+    CHECK(contains(made.err, "furnace: truth of 16 paths a pixel, its own noise"));
+    CHECK(contains(made.err, "skipped cornell-box accurate: --max-memory"));
+    CHECK(contains(made.out, "on the front"));
+    const fs::path folder = box.here() / "out";
+    const auto rows = rowsOf(folder);
+    CHECK(rows.size() == 2 * (4 + 3));
+    int traced = 0;
+    for (const auto& [key, row] : rows) {
+        CHECK(fs::exists(folder / "thumbnails" / (key + ".png")));
+        CHECK(fs::exists(folder / "thumbnails" / (row["case"].get<std::string>() + ".png")));
+        CHECK(row["rmse"].get<double>() > 0.0);
+        CHECK(row["cost"].get<double>() > 0.0);
+        CHECK(row["noise"].get<double>() > 0.0);
+        traced += row["kind"] == "path_tracer";
+        if (row["kind"] != "path_tracer") CHECK(row["voxel_resolution"] == 32);
+    }
+    CHECK(traced == 6);
+    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) CHECK(fs::file_size(folder / name) > 0);
+    CHECK(Json::parse(readText(folder / "sweep.json")).size() == rows.size());
+
+    // All is there: nothing is measured again, and the files can be made from the rows alone.
+    const std::string before = readText(folder / "rows.jsonl"), csv = readText(folder / "sweep.csv");
+    fs::remove(folder / "report.html");
+    fs::remove(folder / "sweep.csv");
+    CHECK(contains(box.run(kTiny + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab").out, " 0 rows measured, 14 found"));
+    fs::remove(folder / "report.html");
+    CHECK(box.run("sweep --report-only -o out").code == 0);
+    CHECK(fs::exists(folder / "report.html"));
+    CHECK(readText(folder / "rows.jsonl") == before);
+    CHECK(readText(folder / "sweep.csv") == csv);
+}
+
+TEST_CASE("program: sweep finds the truth by what it is of, whatever its folder is called", "[apps][sweep]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("reference cornell-box --size 32x18 --spp 32 --block 2 -o refs/mine --quiet").code == 0);
+    REQUIRE(box.run("reference cornell-box --size 32x18 --spp 64 --seed 3 -o refs/another-seed --quiet").code == 0);
+    const Outcome swept = box.run(kTiny + "-o out --references refs --axis cone_count=2");
+    CHECK(swept.code == 0);
+    CHECK(contains(swept.err, "truth of 32 paths"));
+    CHECK(std::distance(fs::directory_iterator(box.here() / "refs"), {}) == 2);
+    CHECK(box.run(kTiny + "-o more --references refs --axis cone_count=2 --spp 33 --quiet").code == 0);
+    CHECK(std::distance(fs::directory_iterator(box.here() / "refs"), {}) == 3);
+}
+
+TEST_CASE("program: sweep killed or interrupted goes on to the rows of an uninterrupted one", "[apps][sweep]")
+{
+    const Sandbox box;
+    const std::string arguments = kTiny + "--quiet --axis cone_count=1,2,3,4,5,6,7,8 --axis step=0.5,1 -o ";
+    REQUIRE(box.run(arguments + "whole").code == 0);
+    const auto whole = rowsOf(box.here() / "whole");
+    CHECK(whole.size() == 3 + 16);
+    for (const char* signal : {"INT", "KILL"}) {
+        std::ostringstream strike;
+        const fs::path rows = box.here() / "part" / "rows.jsonl";
+        strike << "& pid=$!; while [ \"$(cat " << rows << " 2>/dev/null | wc -l)\" -lt 6 ] && kill -0 $pid; do sleep 0.005; done; kill -" << signal
+               << " $pid; wait $pid; exit $?";
+        box.run(arguments + "part", "exec", strike.str());
+        REQUIRE(box.run(arguments + "part").code == 0);
+        const auto part = rowsOf(box.here() / "part");
+        CHECK(part.size() == whole.size());
+        for (const auto& [key, row] : whole) {
+            REQUIRE(part.count(key) == 1);
+            for (const char* same : {"label", "irradiance_sha256", "rmse", "flip", "cone_steps", "rays", "bytes"}) CHECK(part.at(key)[same] == row[same]);
+        }
+        fs::remove_all(box.here() / "part");
+    }
+}
+
+TEST_CASE("program: sweep searches for the front and can be continued", "[apps][sweep]")
+{
+    const Sandbox box;
+    const std::string arguments = "sweep cornell-box --size 16x9 --spp 16 --path-tracer 0 --repeat 1 --max-memory 3 -o out --axes search --budget 2";
+    // Its baseline is the preset balanced.
+    const Outcome refused = box.run(arguments);
+    CHECK(refused.code == 2);
+    CHECK(contains(refused.err, "balanced"));
+}
+
+TEST_CASE("program: sweep refuses what makes no sense in one line, and leaves nothing", "[apps][sweep]")
+{
+    const Sandbox box;
+    for (const char* arguments : {"cornell-box", "-o out", "no-such-scene -o out", "cornell-box no-such-scene -o out", "cornell-box -o out --axis cone_count=", "cornell-box -o out --axis cones=1",
+                                  "cornell-box -o out --axes no-such-file", "cornell-box -o out --axes search --axis cone_count=1", "cornell-box -o out --repeat 0",
+                                  "cornell-box -o out --size 0x1", "cornell-box -o out --max-memory -1", "--report-only -o out"}) {
+        const Outcome refused = box.run(std::string("sweep ") + arguments);
+        INFO(arguments << ": " << refused.err);
+        CHECK(refused.code == 2);
+        CHECK(isOneLine(refused.err));
+        CHECK(box.empty());
+    }
+    REQUIRE(box.run(kTiny + "-o out --axis cone_count=2 --path-tracer 0 --quiet").code == 0);
+    const std::string rows = readText(box.here() / "out" / "rows.jsonl");
+    std::ofstream(box.here() / "out" / "rows.jsonl") << "{]\n" << rows;
+    const Outcome damaged = box.run(kTiny + "-o out --axis cone_count=2 --path-tracer 0 --quiet");
+    CHECK(damaged.code == 2);
+    CHECK(contains(damaged.err, "rows.jsonl:1"));
+}
