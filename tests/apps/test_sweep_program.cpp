@@ -12,9 +12,9 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// The presets need more memory than this, and are skipped: they take too long here.
-const std::string kTiny = "sweep cornell-box --size 32x18 --spp 16 --path-tracer 4 --repeat 1 --max-memory 3 --set voxel_resolution=32 --set rsm_resolution=64 ";
+const std::string kTinySweep = "sweep cornell-box --size 32x18 --spp 16 --path-tracer 4 --repeat 1 --max-memory 3 --set voxel_resolution=32 --set rsm_resolution=64 ";
 
-std::map<std::string, Json> rowsOf(const fs::path& folder)
+std::map<std::string, Json> sweptRows(const fs::path& folder)
 {
     std::map<std::string, Json> rows;
     std::istringstream lines(readText(folder / "rows.jsonl"));
@@ -30,14 +30,14 @@ std::map<std::string, Json> rowsOf(const fs::path& folder)
 TEST_CASE("program: sweep keeps a row a setting and scene with its picture, and writes all its files", "[apps][sweep]")
 {
     const Sandbox box;
-    const Outcome made = box.run(kTiny + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab");
+    const Outcome made = box.run(kTinySweep + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab");
     INFO(made.err);
     REQUIRE(made.code == 0);
     CHECK(contains(made.err, "furnace: truth of 16 paths a pixel, its own noise"));
     CHECK(contains(made.err, "skipped cornell-box accurate: --max-memory"));
     CHECK(contains(made.out, "on the front"));
     const fs::path folder = box.here() / "out";
-    const auto rows = rowsOf(folder);
+    const auto rows = sweptRows(folder);
     CHECK(rows.size() == 2 * (4 + 3));
     int traced = 0;
     for (const auto& [key, row] : rows) {
@@ -57,7 +57,7 @@ TEST_CASE("program: sweep keeps a row a setting and scene with its picture, and 
     const std::string before = readText(folder / "rows.jsonl"), csv = readText(folder / "sweep.csv");
     fs::remove(folder / "report.html");
     fs::remove(folder / "sweep.csv");
-    CHECK(contains(box.run(kTiny + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab").out, " 0 rows measured, 14 found"));
+    CHECK(contains(box.run(kTinySweep + "furnace -o out --axis cone_count=2,3 --axis estimator=paper,slab").out, " 0 rows measured, 14 found"));
     fs::remove(folder / "report.html");
     CHECK(box.run("sweep --report-only -o out").code == 0);
     CHECK(fs::exists(folder / "report.html"));
@@ -70,20 +70,20 @@ TEST_CASE("program: sweep finds the truth by what it is of, whatever its folder 
     const Sandbox box;
     REQUIRE(box.run("reference cornell-box --size 32x18 --spp 32 --block 2 -o refs/mine --quiet").code == 0);
     REQUIRE(box.run("reference cornell-box --size 32x18 --spp 64 --seed 3 -o refs/another-seed --quiet").code == 0);
-    const Outcome swept = box.run(kTiny + "-o out --references refs --axis cone_count=2");
+    const Outcome swept = box.run(kTinySweep + "-o out --references refs --axis cone_count=2");
     CHECK(swept.code == 0);
     CHECK(contains(swept.err, "truth of 32 paths"));
     CHECK(std::distance(fs::directory_iterator(box.here() / "refs"), {}) == 2);
-    CHECK(box.run(kTiny + "-o more --references refs --axis cone_count=2 --spp 33 --quiet").code == 0);
+    CHECK(box.run(kTinySweep + "-o more --references refs --axis cone_count=2 --spp 33 --quiet").code == 0);
     CHECK(std::distance(fs::directory_iterator(box.here() / "refs"), {}) == 3);
 }
 
 TEST_CASE("program: sweep killed or interrupted goes on to the rows of an uninterrupted one", "[apps][sweep]")
 {
     const Sandbox box;
-    const std::string arguments = kTiny + "--quiet --axis cone_count=1,2,3,4,5,6,7,8 --axis step=0.5,1 -o ";
+    const std::string arguments = kTinySweep + "--quiet --axis cone_count=1,2,3,4,5,6,7,8 --axis step=0.5,1 -o ";
     REQUIRE(box.run(arguments + "whole").code == 0);
-    const auto whole = rowsOf(box.here() / "whole");
+    const auto whole = sweptRows(box.here() / "whole");
     CHECK(whole.size() == 3 + 16);
     for (const char* signal : {"INT", "KILL"}) {
         std::ostringstream strike;
@@ -92,7 +92,7 @@ TEST_CASE("program: sweep killed or interrupted goes on to the rows of an uninte
                << " $pid; wait $pid; exit $?";
         box.run(arguments + "part", "exec", strike.str());
         REQUIRE(box.run(arguments + "part").code == 0);
-        const auto part = rowsOf(box.here() / "part");
+        const auto part = sweptRows(box.here() / "part");
         CHECK(part.size() == whole.size());
         for (const auto& [key, row] : whole) {
             REQUIRE(part.count(key) == 1);
@@ -124,10 +124,10 @@ TEST_CASE("program: sweep refuses what makes no sense in one line, and leaves no
         CHECK(isOneLine(refused.err));
         CHECK(box.empty());
     }
-    REQUIRE(box.run(kTiny + "-o out --axis cone_count=2 --path-tracer 0 --quiet").code == 0);
+    REQUIRE(box.run(kTinySweep + "-o out --axis cone_count=2 --path-tracer 0 --quiet").code == 0);
     const std::string rows = readText(box.here() / "out" / "rows.jsonl");
     std::ofstream(box.here() / "out" / "rows.jsonl") << "{]\n" << rows;
-    const Outcome damaged = box.run(kTiny + "-o out --axis cone_count=2 --path-tracer 0 --quiet");
+    const Outcome damaged = box.run(kTinySweep + "-o out --axis cone_count=2 --path-tracer 0 --quiet");
     CHECK(damaged.code == 2);
     CHECK(contains(damaged.err, "rows.jsonl:1"));
 }
