@@ -11,6 +11,7 @@
 #include "core/base/settings_table.h"
 #include "core/report/table.h"
 #include "core/scene/scene_hash.h"
+#include "sweep/advice.h"
 #include "sweep/measure.h"
 #include "sweep/operating_points.h"
 #include "sweep/tune.h"
@@ -36,7 +37,7 @@ struct TuneArguments : CommonOptions {
     std::string output, references, metric = "rmse", maxTime, probe = "320x180";
     double maxError = 0.0, maxMemory = 0.0;
     std::uint64_t samples = 1024;
-    bool nearest = false, hasError = false, hasMemory = false;
+    bool nearest = false, untrimmed = false, hasError = false, hasMemory = false;
 };
 
 /// "40", "40ms": milliseconds; "3.5cal": calibration frames.
@@ -71,12 +72,28 @@ TuneBudget chosenBudget(const TuneArguments& options)
     return budget;
 }
 
-/// The shipped points with the user's --set over each, and their bytes at the asked size.
-std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& scene, const IVec2& size)
+/// Takes out what this scene, seen like this, does not require; says what.
+std::vector<std::string> trim(Settings& settings, const Scene& scene, const Camera& camera, const IVec2& size)
+{
+    const SceneAnalysis analysis = analyseScene(scene, camera, analyseRequirements(scene, settings.force), settings, size.x, size.y);
+    const std::vector<Advice> advice = adviseSettings(analysis, settings, size.x, size.y);
+    std::vector<std::string> trimmed;
+    for (const Advice& change : advice) trimmed.push_back(change.key + " " + change.from + " -> " + change.to + ": " + change.why);
+    settings = applyAdvice(settings, advice);
+    return trimmed;
+}
+
+/// The shipped points with the user's --set over each, what the scene does not require taken out, and their bytes at the asked size.
+std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& scene, const Camera& camera, const IVec2& size)
 {
     std::vector<TunePoint> points;
     std::map<std::string, std::vector<int>> layersKept;  // by all that they depend on
     for (NamedSettings& named : operatingPoints()) {
+        for (const std::string& assignment : options.assignments) applySetting(named.settings, assignment);
+        validate(named.settings);
+        std::vector<std::string> trimmed;
+        if (!options.untrimmed) trimmed = trim(named.settings, scene, camera, size);
+        // What the user has fixed stays.
         for (const std::string& assignment : options.assignments) applySetting(named.settings, assignment);
         validate(named.settings);
         const auto same = [&](const TunePoint& point) { return point.named.settings == named.settings; };
@@ -88,7 +105,7 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
         const Requirements needs = analyseRequirements(scene, named.settings.force);
         auto& kept = layersKept[settingsToJson(maps).dump()];
         if (kept.empty() && !scene.lights.empty()) kept = countLayersKept(scene, needs, named.settings);
-        TunePoint point{named, double(frameBytes(named.settings, needs, kept, size.x, size.y)) * 1e-6, {}, {}, {}};
+        TunePoint point{named, double(frameBytes(named.settings, needs, kept, size.x, size.y)) * 1e-6, {}, {}, {}, trimmed};
         points.push_back(std::move(point));
     }
     return points;
@@ -164,7 +181,7 @@ int runTune(const TuneArguments& options)
     sceneCase.sceneSha256 = hashScene(sceneCase.scene);
 
     Progress progress(options.quiet);
-    std::vector<TunePoint> points = chosenPoints(options, sceneCase.scene, size);
+    std::vector<TunePoint> points = chosenPoints(options, sceneCase.scene, sceneCase.camera, size);
     const Calibration calibration;
     TuneRequest request{.budget = budget, .width = size.x, .height = size.y, .threads = threadsOf(options)};
     // Short frames find a quiet moment where long ones do not.
@@ -232,6 +249,7 @@ Command addTune(CLI::App& program)
     parser->add_option("--spp", options->samples, "samples a pixel of the path-traced truth")->capture_default_str();
     parser->add_option("--references", options->references, "folder of references, as lrsm reference and lrsm sweep write them: read, and added to");
     parser->add_flag("--nearest", options->nearest, "write the nearest settings where none meet the budget (the exit code is 1 all the same)");
+    parser->add_flag("--untrimmed", options->untrimmed, "leave in what the scene does not require");
     addRunOptions(*parser, *options);
     parser->footer("Without --max-error: the smallest error within time and memory. Exit code 1: no settings meet the budget. See docs/tune.md.");
     return {parser, [options, error, memory] {

@@ -75,6 +75,7 @@ TuneJson pointJson(const TunePoint& point, const TuneRecord& record)
     TuneJson changes = TuneJson::object();
     for (const SettingDifference& change : differences(preset("balanced"), point.named.settings)) changes[change.key] = change.b;
     json["changes"] = changes;
+    if (!point.trimmed.empty()) json["trimmed"] = point.trimmed;
     return json;
 }
 
@@ -148,6 +149,8 @@ void printTune(std::ostream& out, const TuneRecord& record, const std::string& f
         if (result.nearest) out << "nearest: " << sentence(result.points[*result.nearest], record) << "\n";
         if (result.nearest && file.empty()) out << "nothing was written; --nearest writes the nearest\n";
     }
+    if (marked)
+        for (const std::string& change : result.points[*marked].trimmed) out << "  not required here: " << change << "\n";
     if (!file.empty()) out << file << ": for --settings\n";
 }
 

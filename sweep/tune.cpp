@@ -17,6 +17,8 @@ constexpr std::array<std::string_view, 5> kPixelPasses = {"gbuffer", "direct", "
 
 /// A point this far over the time budget stands for all costlier ones.
 constexpr double kHopelessTime = 1.5;
+/// How far predictions that a verification has corrected are off, as seen in scenes: up to a few percent.
+constexpr double kNear = 1.05;
 /// Points that meet the budget by prediction before the rest is left unprobed: one to choose, one for when it fails.
 constexpr int kEnough = 2;
 
@@ -41,10 +43,15 @@ class Tuner {
         for (int verifications = 0;;) {
             probeUntilEnough();
             const bool mayVerify = verifications < request_.maxVerifications;
-            std::optional<Known> next = best(/*verifiedOnly*/ !mayVerify);
+            std::optional<Known> next = best(mayVerify ? 1.0 : 0.0);
             if (next && next->verified) {
-                result_.chosen = next->index;
-                break;
+                // A better one that the prediction puts just outside is worth a look.
+                const std::optional<Known> near = best(mayVerify ? kNear : 0.0);
+                if (!near || near->verified) {
+                    result_.chosen = next->index;
+                    break;
+                }
+                next = near;
             }
             if (!next && mayVerify && probeNext()) continue;
             if (!next) next = nearest();
@@ -76,11 +83,12 @@ class Tuner {
 
     bool meets(const Known& point) const { return excess(point.figures, request_.budget) <= 1.0; }
 
-    std::optional<Known> best(bool verifiedOnly) const
+    /// Of the points within the budget, or where that is only predicted, within `tolerance` times it.
+    std::optional<Known> best(double tolerance) const
     {
         std::optional<Known> best;
         for (const Known& point : known()) {
-            if (!meets(point) || (verifiedOnly && !point.verified)) continue;
+            if (excess(point.figures, request_.budget) > (point.verified ? 1.0 : tolerance)) continue;
             const TuneFigures &a = point.figures, &b = best ? best->figures : a;
             const bool better = request_.budget.error ? a.cost < b.cost : a.error < b.error || (a.error == b.error && a.cost < b.cost);
             if (!best || better) best = point;

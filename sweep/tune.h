@@ -57,6 +57,7 @@ struct TunePoint {
     std::optional<Measurement> probe;     ///< at the probe's size
     std::optional<Measurement> verified;  ///< at the asked size
     std::string skipped;                  ///< why it was not probed
+    std::vector<std::string> trimmed;     ///< what the scene does not require, and why: already in `named`
 };
 
 struct TuneRequest {
@@ -94,7 +95,8 @@ struct TuneActions {
 ///
 /// `points` go from cheap to costly. They are probed in this order, as far as needed: what is over the memory is not, what follows a point of 1.5 times the
 /// time is not, and with an error asked for, what follows two points within the budget is not. The best prediction is verified; when it fails, and when the verified
-/// figures shift the other predictions, the next best is, up to `maxVerifications` times. Before nothing is found, the nearest is verified too.
+/// figures shift the other predictions, the next best is, and once a point holds, a better one
+/// that is predicted up to 5 % outside the budget: `maxVerifications` times in all. Before nothing is found, the nearest is verified too.
 TuneResult tune(std::vector<TunePoint> points, const TuneRequest& request, const TuneActions& actions);
 
 }  // namespace lrsm
