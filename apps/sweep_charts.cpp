@@ -105,10 +105,10 @@ std::string hoverOf(const Measurement& row)
 {
     std::string text = settingsLine(row) + "\nerror " + percentText(row.error.net());
     if (row.error.net() <= row.error.noise) text += " (<= floor)";
-    text += ", FLIP " + shortNumber(row.error.flip) + ", energy " + shortNumber(row.error.energy) + "\ntime " + shortNumber(row.cost) + " calibration frames; here " +
-            shortNumber(row.frame.median) + " ms, " + shortNumber(row.frameCpu) + " ms of processor time";
-    if (row.bytes) text += "\nmemory " + shortNumber(static_cast<double>(row.bytes) / 1e6) + " MB";
-    if (row.gpuBytes) text += ", " + shortNumber(static_cast<double>(row.gpuBytes) / 1e6) + " MB in the GPU's formats";
+    text += ", FLIP " + shortNumber(row.error.flip) + ", energy " + shortNumber(row.error.energy) + "\ntime " + plainNumber(row.cost) + " calibration frames; here " +
+            plainNumber(row.frame.median) + " ms, " + plainNumber(row.frameCpu) + " ms of processor time";
+    if (row.bytes) text += "\nmemory " + plainNumber(static_cast<double>(row.bytes) / 1e6) + " MB";
+    if (row.gpuBytes) text += ", " + plainNumber(static_cast<double>(row.gpuBytes) / 1e6) + " MB in the GPU's formats";
     return text;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 std::string megabytes(std::size_t bytes)
 {
-    return bytes ? shortNumber(static_cast<double>(bytes) / 1e6) : "";
+    return bytes ? plainNumber(static_cast<double>(bytes) / 1e6) : "";
 }
 
 std::string changeText(double change)
@@ -45,12 +45,6 @@ std::vector<std::string> effectRow(const Effect& e)
             std::to_string(e.changed) + " of " + std::to_string(e.cases)};
 }
 
-/// Calibration frames and milliseconds: no powers of ten where digits do.
-std::string timeText(double value)
-{
-    return value >= 1000.0 && value < 1e7 ? std::to_string(std::llround(value)) : shortNumber(value);
-}
-
 std::string errorText(const Looked& looked, const std::string& end)
 {
     switch (looked.reach) {
@@ -65,9 +59,9 @@ std::string errorText(const Looked& looked, const std::string& end)
 std::string costText(const Looked& looked)
 {
     switch (looked.reach) {
-        case Reach::measured: return timeText(looked.value);
-        case Reach::before: return "< " + timeText(looked.value);
-        case Reach::beyond: return "> " + timeText(looked.value);
+        case Reach::measured: return plainNumber(looked.value);
+        case Reach::before: return "< " + plainNumber(looked.value);
+        case Reach::beyond: return "> " + plainNumber(looked.value);
         case Reach::belowFloor: break;
     }
     return "<= floor";
@@ -83,6 +77,11 @@ std::string ratioText(const std::optional<double>& ratio)
 std::string percentText(double ratio)
 {
     return shortNumber(100.0 * ratio) + " %";
+}
+
+std::string plainNumber(double value)
+{
+    return value >= 1000.0 && value < 1e7 ? std::to_string(std::llround(value)) : shortNumber(value);
 }
 
 std::string changedText(const Measurement& row)
@@ -101,7 +100,7 @@ ReportTable casesTable(const std::vector<CaseRows>& cases)
         std::vector<std::string> row = {one.name, std::to_string(any.width) + " x " + std::to_string(any.height), std::to_string(one.settings.size()),
                                         one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples), std::to_string(any.truthSamples), shortNumber(100.0 * any.error.noise)};
         if (const Measurement* balanced = findSettings(one, Settings{}))
-            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), timeText(balanced->cost), timeText(balanced->frame.median), megabytes(balanced->bytes)});
+            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), plainNumber(balanced->cost), plainNumber(balanced->frame.median), megabytes(balanced->bytes)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -132,9 +131,9 @@ ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<E
         std::string others;
         for (const TriedValue& other : tried)
             if (other.key == t.key && onFront(other)) others += (others.empty() ? "" : ", ") + other.value;
-        const bool nothing = std::any_of(effects.begin(), effects.end(),
-                                         [&](const Effect& e) { return e.kind == EffectKind::changesNothing && e.label == t.key + "=" + t.value; });
-        table.rows.push_back({t.key + "=" + t.value, std::to_string(t.rows), shortNumber(100.0 * t.closest), nothing ? "no" : "yes", others});
+        const auto effect = std::find_if(effects.begin(), effects.end(), [&](const Effect& e) { return e.assignment == t.key + "=" + t.value; });
+        const std::string changes = effect == effects.end() ? "" : effect->kind == EffectKind::changesNothing ? "no" : "yes";
+        table.rows.push_back({t.key + "=" + t.value, std::to_string(t.rows), shortNumber(100.0 * t.closest), changes, others});
     }
     return table;
 }
@@ -153,7 +152,7 @@ ReportTable equalTable(const std::vector<EqualRow>& rows)
 {
     ReportTable table{"", {"scene", "preset", "frames", "error, %", "equal time: its error, %", "ratio", "equal error: its frames", "ratio"}, {}};
     for (const EqualRow& r : rows)
-        table.rows.push_back({r.name, r.preset, timeText(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
+        table.rows.push_back({r.name, r.preset, plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
                               ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
     return table;
 }
@@ -162,8 +161,8 @@ ReportTable tracerTable(const std::vector<TracerRow>& rows)
 {
     ReportTable table{"", {"scene", "spp", "frames", "error, %", "LRSM: frames", "error, %", "ratio of frames", "LRSM's settings against balanced"}, {}};
     for (const TracerRow& r : rows) {
-        std::vector<std::string> row = {r.name, std::to_string(r.samples), timeText(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
-        if (r.rival) row.insert(row.end(), {timeText(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
+        std::vector<std::string> row = {r.name, std::to_string(r.samples), plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
+        if (r.rival) row.insert(row.end(), {plainNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
         else row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "", r.atFloor ? "not compared" : "none errs as little"});
         table.rows.push_back(std::move(row));
     }
@@ -174,7 +173,7 @@ ReportTable frontTable(const std::string& title, const std::vector<const Measure
 {
     ReportTable table{title, {"frames", "ms", "error, %", "FLIP", "energy", "MB", "settings against balanced"}, {}};
     for (const Measurement* row : front)
-        table.rows.push_back({timeText(row->cost), timeText(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
+        table.rows.push_back({plainNumber(row->cost), plainNumber(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
                               shortNumber(row->error.flip), shortNumber(row->error.energy), megabytes(row->bytes), changedText(*row)});
     return table;
 }

@@ -92,11 +92,25 @@ EffectKind kindOf(const Effect& effect, double tolerance)
     return effect.cost < -tolerance ? EffectKind::saves : EffectKind::losesBoth;
 }
 
+std::string valueText(const nlohmann::ordered_json& value)
+{
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string assignmentOf(const Step& step)
+{
+    const std::string key = step.label.substr(0, step.label.find('='));
+    const nlohmann::ordered_json settings = settingsToJson(step.row->settings);
+    const bool single = step.label.find(' ') == std::string::npos && settings.contains(key);
+    return single ? key + "=" + valueText(settings.at(key)) : "";
+}
+
 Effect effectOf(const Group& group, double unit, double tolerance)
 {
     Effect effect;
     effect.label = group.front().label;
     effect.base = group.front().around;
+    effect.assignment = assignmentOf(group.front());
     effect.cases = group.size();
     std::vector<CostError> ratios;
     std::vector<double> bytes;
@@ -139,11 +153,6 @@ double missOf(const Measurement& row, const std::vector<const Measurement*>& fro
 bool among(const std::vector<const Measurement*>& rows, const Measurement* row)
 {
     return std::find(rows.begin(), rows.end(), row) != rows.end();
-}
-
-std::string valueText(const nlohmann::ordered_json& value)
-{
-    return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 /// Counts one case's rows in, value by value.

@@ -20,6 +20,7 @@ enum class EffectKind {
 /// A value against its base, over the cases that have both. Changes are ratio - 1 with the ratio a geometric mean over the cases.
 struct Effect {
     std::string label, base;        ///< "cone_count=4", "balanced"; "density_k=4", "balanced estimator=paper": with what the value needs beside it
+    std::string assignment;         ///< the label's first "key=value" as TriedValue writes it; empty where several values change
     EffectKind kind = EffectKind::losesBoth;
     std::size_t cases = 0, changed = 0;  ///< measured in; where a bit of the irradiance differs
     double error = 0.0, cost = 0.0, bytes = 0.0;  ///< changes; -0.1: 10 % less
