@@ -10,7 +10,7 @@ namespace lrsm {
 namespace {
 
 /// Bytes of PNGs; base64 makes 4/3 of it.
-constexpr std::size_t kPictureBudget = 9'000'000;
+constexpr std::size_t kPictureBudget = 8'000'000;
 
 std::string countOf(std::size_t count, const std::string& what)
 {
