@@ -5,7 +5,7 @@
 #include "core/base/float_state.h"
 #include "core/base/settings_table.h"
 #include "core/scene/check_scene.h"
-#include "lrsm/sample.h"
+#include "lrsm/rsm.h"
 #include "sweep/advice.h"
 #include "voxel/bit_grid.h"
 
@@ -155,7 +155,7 @@ void analyseCones(const Settings& settings, const VoxelFrame& frame, SceneAnalys
     out.finestTap = double(finest) * out.voxelSize;
     out.mapTap = kMapTapVoxels * out.voxelSize;
     out.coneStart = double(start) * out.voxelSize;
-    out.voxelLevels = std::bit_width(static_cast<unsigned>(frame.resolution));
+    out.voxelLevels = static_cast<int>(std::bit_width(static_cast<unsigned>(frame.resolution)));
     out.voxelLevelsRead = std::min(out.voxelLevels, static_cast<int>(std::ceil(coarsest)) + 1);
 }
 
