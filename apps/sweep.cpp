@@ -12,6 +12,7 @@
 #include "core/report/table.h"
 #include "core/scene/scene_hash.h"
 #include "sweep/front.h"
+#include "sweep/operating_points.h"
 #include "sweep/search.h"
 
 #include <algorithm>
@@ -36,11 +37,12 @@ struct SweepArguments : CommonOptions {
     bool reportOnly = false;
 };
 
-enum class Plan { presets, oneAtATime, product, search };
+enum class Plan { presets, points, oneAtATime, product, search };
 
 Plan chosenPlan(const SweepArguments& options)
 {
     if (options.axesFile == "presets") return Plan::presets;
+    if (options.axesFile == "points") return Plan::points;
     if (options.axesFile == "search") return Plan::search;
     if (options.axesFile == "one-at-a-time" || (options.axesFile.empty() && options.axes.empty())) return Plan::oneAtATime;
     return Plan::product;
@@ -53,6 +55,7 @@ std::vector<NamedSettings> plannedSettings(const SweepArguments& options, Plan p
         throw InputError("--axis " + options.axes.front(), "goes with --axes FILE, or alone; not with --axes " + options.axesFile);
     std::vector<std::string> refused;
     std::vector<NamedSettings> all;
+    if (plan == Plan::points) all = operatingPoints();
     if (plan == Plan::oneAtATime) all = oneAtATime(base, &refused);
     if (plan == Plan::product) {
         std::vector<Axis> axes;
@@ -202,7 +205,7 @@ bool runAll(const SweepArguments& options, Plan plan, const std::vector<NamedSet
     std::vector<NamedSettings> presets;
     for (const std::string& name : presetNames()) presets.push_back({name, preset(name)});
     const std::vector<SweepTask> first = tasksOf(presets, cases.size(), RowKind::preset, "");
-    const bool pure = base == preset(options.preset);
+    const bool pure = plan != Plan::points && base == preset(options.preset);
     const std::vector<SweepTask> rest = tasksOf(settings, cases.size(), RowKind::axis, pure ? options.preset : "");
     std::size_t traced = 0;
     for (std::uint64_t n = 1, before = 0; before < options.pathTracerSamples; before = n, n = std::min(2 * n, options.pathTracerSamples)) ++traced;
@@ -277,7 +280,7 @@ Command addSweep(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the rows; the same command goes on where it was interrupted");
-    parser->add_option("--axes", options->axesFile, "one-at-a-time (around the settings given), presets, search (for the front), or a JSON file {\"key\": [values], ...}: every combination");
+    parser->add_option("--axes", options->axesFile, "one-at-a-time (around the settings given), presets, points (what lrsm tune chooses among), search (for the front), or a JSON file {\"key\": [values], ...}: every combination");
     parser->add_option("--axis", options->axes, "key=v1,v2,...: every combination with the others; repeatable")->allow_extra_args(false);
     parser->add_option("--repeat", options->repeat, "frames timed for each row")->capture_default_str();
     parser->add_option("--spp", options->samples, "paths a pixel of the truth, at least")->capture_default_str();

@@ -1,51 +1,41 @@
 #!/bin/sh
-# The accuracy table of docs/accuracy.md: every scene under every preset against the path tracer, on `irradiance`.
-#   scripts/accuracy.sh [SIZE [SPP [OUT]]]      default 640x360, 512, out/accuracy
-# Scenes: the built-ins, and the views in $LRSM_SCENES/views (default ../shared/scenes) where they exist. References are kept and
-# reused; delete OUT to make them anew. "RMSE/mean" is as measured; "noise" is the truth's own share of it, from its stored variance; "net" is
-# the rest, sqrt(RMSE^2 - noise^2).
+# The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots. An hour on two cores; interrupted, the same command goes on.
+#   scripts/accuracy.sh [OUT]      default out/accuracy
+# Scenes: built-ins, and the views in $LRSM_SCENES/views (default ../shared/scenes); UNSEEN adds scenes to the last table. References are kept in
+# OUT/references, or REFERENCES, and reused.
 set -eu
 cd "$(dirname "$0")/.."
-size=${1:-640x360}
-spp=${2:-512}
-out=${3:-out/accuracy}
+out=${1:-out/accuracy}
 lrsm=${LRSM:-build/release/apps/lrsm}
-presets=${PRESETS:-literal fast balanced accurate}
+references=${REFERENCES:-$out/references}
 views=${LRSM_SCENES:-../shared/scenes}/views
+page=docs/accuracy.md
 
-scenes=${SCENES:-cornell-box two-rooms atrium furnace}
-for view in "$views"/*.json; do
-    if [ -z "${SCENES:-}" ] && [ -f "$view" ]; then scenes="$scenes $view"; fi
-done
-
-# The first value of a key in one of our JSON files, rounded.
-value() { sed -n "s/.*\"$2\": \([-0-9.e+]*\),*$/\1/p" "$1" | head -n 1 | awk -v f="$3" '{ printf f, $1 }'; }
-
-mkdir -p "$out"
-table=$out/table.md
-{
-    echo "| scene | preset | energy | RMSE/mean | noise | net | MAE/mean | FLIP | frame ms |"
-    echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-} >"$table"
-for scene in $scenes; do
-    name=$(basename "$scene" .json)
-    reference=$out/reference/$name
-    if [ ! -f "$reference/frame.json" ]; then
-        echo "accuracy: reference of $name, $spp samples a pixel" >&2
-        mkdir -p "$out/reference"
-        "$lrsm" reference "$scene" --size "$size" --spp "$spp" --block 64 -o "$reference" --quiet >/dev/null
-    fi
-    for preset in $presets; do
-        echo "accuracy: $name, $preset" >&2
-        mkdir -p "$out/$preset" "$out/compare/$preset"
-        "$lrsm" render "$scene" --preset "$preset" --size "$size" -o "$out/$preset/$name" --quiet >/dev/null
-        "$lrsm" compare "$out/$preset/$name" "$reference" -o "$out/compare/$preset/$name" --quiet >/dev/null
-        json=$out/compare/$preset/$name/compare.json
-        rmse=$(value "$json" rmse_over_mean %.3f)
-        noise=$(value "$json" noise_rmse_over_mean %.3f)
-        net=$(awk -v r="$rmse" -v n="$noise" 'BEGIN { printf "%.3f", (r > n ? sqrt(r * r - n * n) : 0) }')
-        echo "| $name | $preset | $(value "$json" energy_ratio %.2f) | $rmse | $noise | $net |" \
-            "$(value "$json" mae_over_mean %.3f) | $(value "$json" mean %.3f) | $(value "$out/$preset/$name/frame.json" milliseconds %.0f) |" >>"$table"
+existing() {
+    for view in "$@"; do
+        if [ -f "$views/$view.json" ]; then echo "$views/$view.json"; fi
     done
-done
-cat "$table"
+}
+chosen="cornell-box two-rooms atrium $(existing sponza sibenik-nave)"
+search="$chosen $(existing sibenik-carpet)"
+unseen="furnace cornell-glossy $(existing cornell sponza-curtains) ${UNSEEN:-}"
+effects="cornell-glossy atrium $(existing sponza sibenik-nave)"
+sweep() { "$lrsm" sweep "$@" --spp 2048 --references "$references"; }
+
+# The points that tune offers, presets among them, and the path tracer.
+sweep $chosen -o "$out/points" --axes points --size 640x360 --repeat 1
+# One setting at a time around balanced.
+sweep $effects -o "$out/settings" --axes one-at-a-time --repeat 1 --path-tracer 0
+# The front, searched from two bases.
+sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 90
+sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 60 --set cone_count=16 --set emitter_delay_taps=2.5 --set emitter_slant_cap=0.25 --set depth_layers=3
+# Scenes that played no part in the choice, and the chosen ones at the same size.
+sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0
+sweep $unseen -o "$out/unseen" --axes points --repeat 1
+
+scripts/accuracy_tables.py $page presets "$out/points/sweep.csv"
+scripts/accuracy_tables.py $page points "$out/points/sweep.csv"
+scripts/accuracy_tables.py $page effects "$out/settings/sweep.csv"
+scripts/accuracy_tables.py $page unseen "$out/unseen/sweep.csv" "$out/seen/sweep.csv"
+scripts/plots.py front "$out/points/sweep.csv" docs/images/accuracy-front.png
+scripts/plots.py front "$out/search/sweep.csv" docs/images/accuracy-search.png

@@ -8,24 +8,26 @@ namespace lrsm {
 
 namespace {
 
-/// What each point changes against `balanced`. Narrower cones see finer voxels and maps, and need a longer emitter delay: all four go together.
+/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps, and need a longer
+/// emitter delay: these go together.
 struct Point {
     std::string_view name, assignments;
 };
 constexpr Point kPoints[] = {
-    {"1 cone, 128^3", "cone_count=1 voxel_resolution=128 rsm_resolution=256 start_voxels=1.5"},
-    {"2 cones, 128^3", "cone_count=2 voxel_resolution=128 rsm_resolution=256 start_voxels=1.5"},
-    {"3 cones, 256^3", "cone_count=3 voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
-    {"4 cones, 256^3", "cone_count=4 voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
+    {"1 cone, 256^3", "cone_count=1 voxel_resolution=256 rsm_resolution=256 start_voxels=2 step=0.75 voxel_level_bias=-2.5"},
+    {"2 cones, 256^3", "cone_count=2 voxel_resolution=256 rsm_resolution=256 start_voxels=2 step=0.75 voxel_level_bias=-2.5"},
+    {"3 cones, 256^3, RSM 256^2", "cone_count=3 voxel_resolution=256 rsm_resolution=256 start_voxels=2 voxel_level_bias=-2.5"},
+    {"fast", "cone_count=3 voxel_resolution=256 rsm_resolution=512 start_voxels=2 voxel_level_bias=-2.5"},
+    {"4 cones, 256^3", "cone_count=4 voxel_resolution=256 rsm_resolution=512 start_voxels=2 voxel_level_bias=-2.5"},
+    {"6 cones, 256^3, long steps", "voxel_resolution=256 rsm_resolution=512 start_voxels=2 step=0.75"},
     {"6 cones, 256^3", "voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
-    {"6 cones, 512^3", ""},
-    {"9 cones, 512^3", "cone_count=9 emitter_delay_taps=2.5"},
-    {"12 cones, 512^3", "cone_count=12 emitter_delay_taps=2.5"},
-    {"16 cones, 512^3", "cone_count=16 emitter_delay_taps=3 emitter_slant_cap=0.25"},
-    {"24 cones, 512^3", "cone_count=24 rsm_resolution=2048 depth_layers=3 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
-    {"32 cones, 512^3", "cone_count=32 rsm_resolution=2048 depth_layers=3 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
-    {"32 cones, 1024^3",
-     "cone_count=32 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"balanced", ""},
+    {"9 cones, 512^3", "cone_count=9 depth_layers=3 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"12 cones, 512^3", "cone_count=12 depth_layers=3 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"fine", "cone_count=16 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"16 cones, 1024^3", "cone_count=16 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"24 cones, 1024^3", "cone_count=24 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"accurate", "cone_count=32 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
 };
 
 }  // namespace

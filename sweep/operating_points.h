@@ -10,7 +10,7 @@ namespace lrsm {
 /// `base` with "key=value key=value" laid over it, as --set would; validated. Throws InputError.
 Settings settingsFromText(Settings base, std::string_view assignments);
 
-/// A dozen settings along the front, by rising effort: what `lrsm tune` chooses among. The list is operating_points.cpp's table alone.
+/// Fourteen settings along the front, by rising cost: what `lrsm tune` chooses among. The list is operating_points.cpp's table alone.
 std::vector<NamedSettings> operatingPoints();
 
 }  // namespace lrsm

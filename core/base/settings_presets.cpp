@@ -35,19 +35,32 @@ Settings literal()
     return s;
 }
 
-/// Half the resolution of voxels and light along an edge; fewer start voxels keep the cones' start near the same length.
+/// Half the cones, and half the resolution of voxels and light along an edge; fewer start voxels keep the cones' start near the same length.
+/// The wide cones leak less when they read the voxels half a level finer.
 Settings fast()
 {
     Settings s;
     s.voxel.resolution = 256;
     s.rsm.resolution = 512;
+    s.cones.count = 3;
     s.cones.startVoxels = 2.0f;
+    s.cones.voxelLevelBias = -2.5f;
     return s;
 }
 
 Settings balanced()
 {
     return {};
+}
+
+/// Sixteen cones through the default's voxels: their taps are narrower, hence the longer delay.
+Settings fine()
+{
+    Settings s;
+    s.cones.count = 16;
+    s.cones.emitterDelayTaps = 2.5f;
+    s.cones.emitterSlantCap = 0.25f;
+    return s;
 }
 
 /// Narrow cones through fine voxels. Fine taps end before an emitter's own voxels do, hence the longer delay.
@@ -72,8 +85,9 @@ struct Preset {
 std::vector<Preset> presets()
 {
     return {{{"literal", "the paper word for word; far too dark, kept as the yardstick"}, literal},
-            {{"fast", "six cones, 256^3 voxels, RSM of 512^2"}, fast},
+            {{"fast", "three cones, 256^3 voxels, RSM of 512^2"}, fast},
             {{"balanced", "the default: six cones, 512^3 voxels with directional opacity"}, balanced},
+            {{"fine", "16 cones, 512^3 voxels"}, fine},
             {{"accurate", "32 cones, 1024^3 voxels, RSM of 2048^2"}, accurate}};
 }
 

@@ -55,7 +55,7 @@ std::vector<SettingDifference> differences(const Settings& a, const Settings& b)
 struct PresetInfo {
     std::string name, summary;
 };
-/// `literal`, `fast`, `balanced` (the default), `accurate`.
+/// `literal`, `fast`, `balanced` (the default), `fine`, `accurate`.
 std::vector<PresetInfo> presetInfos();
 std::vector<std::string> presetNames();
 /// InputError names the presets for an unknown one.

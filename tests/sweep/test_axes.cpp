@@ -131,7 +131,7 @@ TEST_CASE("the search's axes hold what the presets but `literal` choose", "[swee
 {
     for (const Axis& axis : searchAxes()) {
         CHECK(axis.values.size() >= 2);
-        for (const char* name : {"fast", "balanced", "accurate"}) {
+        for (const char* name : {"fast", "balanced", "fine", "accurate"}) {
             INFO(name << " " << axis.key);
             int matches = 0;
             for (const std::string& value : axis.values) {
