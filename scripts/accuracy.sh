@@ -1,14 +1,14 @@
 #!/bin/sh
 # The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots. An hour on two cores; interrupted, the same command goes on.
 #   scripts/accuracy.sh [OUT]      default out/accuracy
-# Scenes: built-ins, and the views in $LRSM_SCENES/views (default ../shared/scenes); UNSEEN adds scenes to the last table. References are kept in
-# OUT/references, or REFERENCES, and reused.
+# Scenes: built-ins, and those in $LRSM_SCENES (default ../shared/scenes) where they exist. References are kept in OUT/references, or REFERENCES, and reused.
 set -eu
 cd "$(dirname "$0")/.."
 out=${1:-out/accuracy}
 lrsm=${LRSM:-build/release/apps/lrsm}
 references=${REFERENCES:-$out/references}
-views=${LRSM_SCENES:-../shared/scenes}/views
+scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}" 2>/dev/null || echo none)
+views=$scenes/views
 page=docs/accuracy.md
 
 existing() {
@@ -16,9 +16,23 @@ existing() {
         if [ -f "$views/$view.json" ]; then echo "$views/$view.json"; fi
     done
 }
+# view NAME SCENE EYE TARGET FOV LIGHT: a view that no setting was chosen by.
+view() {
+    if [ ! -f "$scenes/$2" ]; then return; fi
+    mkdir -p "$out/views"
+    echo "{\"scene\": \"$scenes/$2\", \"camera\": {\"eye\": [$3], \"target\": [$4], \"up\": [0, 1, 0], \"verticalFovDegrees\": $5}, \"lights\": [{$6, \"color\": [1, 1, 1]}]}" >"$out/views/$1.json"
+    echo "$out/views/$1.json"
+}
+spot() { echo "\"type\": \"spot\", \"position\": [$1], \"target\": [$2], \"intensity\": $3, \"innerConeAngleDegrees\": $4, \"outerConeAngleDegrees\": $5"; }
+sun() { echo "\"type\": \"directional\", \"direction\": [$1], \"intensity\": $2"; }
+
 chosen="cornell-box two-rooms atrium $(existing sponza sibenik-nave)"
 search="$chosen $(existing sibenik-carpet)"
-unseen="furnace cornell-glossy $(existing cornell sponza-curtains) ${UNSEEN:-}"
+unseen="furnace cornell-glossy $(existing cornell sponza-curtains)
+    $(view sponza-gallery sponza.glb "12, 6.5, -4.5" "-6, 5, 3.5" 60 "$(sun "-0.35, -1, 0.12" 10)")
+    $(view sibenik-side sibenik.glb "-3, -11.5, -1.5" "10, -11, 1.5" 60 "$(spot "2, -3, 1" "6, -15, -2" 1500 28 33)")
+    $(view dragon dragon_lowres.glb "0.9, 0.8, 1.6" "0, 0.45, 0" 40 "$(spot "0.8, 2.2, 1.2" "0, 0.4, 0" 20 20 28)")
+    $(view house samples/PlayCanvas_house_mask.glb "0.35, 0.28, 0.45" "0, 0.06, 0" 40 "$(sun "-0.4, -1, -0.3" 6)")"
 effects="cornell-glossy atrium $(existing sponza sibenik-nave)"
 sweep() { "$lrsm" sweep "$@" --spp 2048 --references "$references"; }
 
@@ -31,7 +45,7 @@ sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget
 sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 60 --set cone_count=16 --set emitter_delay_taps=2.5 --set emitter_slant_cap=0.25 --set depth_layers=3
 # Scenes that played no part in the choice, and the chosen ones at the same size.
 sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0
-sweep $unseen -o "$out/unseen" --axes points --repeat 1
+sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0
 
 scripts/accuracy_tables.py $page presets "$out/points/sweep.csv"
 scripts/accuracy_tables.py $page points "$out/points/sweep.csv"
