@@ -24,7 +24,7 @@ LayerTerms evaluateLayer(const Lrsm& lrsm, int layer, float f, const LightSpaceS
     terms.radiance = texel.radiance;
 
     // Eq. 8, backface culling.
-    terms.normal = backfaceWeight(normalTerm(texel, toReceiver), settings.backface, settings.backfaceClamp);
+    terms.normal = backfaceWeight(normalTerm(texel, toReceiver), settings.backface);
     if (!(terms.normal > 0.0f)) return terms;
 
     // Eq. 10-12, in the layer's warped depth.

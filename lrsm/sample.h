@@ -30,14 +30,11 @@ inline float normalTerm(const FilteredTexel& texel, const Vec3& toReceiver)
     const float facing = glm::dot(texel.normal, toReceiver);
     return facing > 0.0f && texel.normalAlpha > 0.0f ? facing / texel.normalAlpha : 0.0f;
 }
-/// The `backface` setting's variants of the term: N, min(1, clamp N), or 1 where N > 0.
-inline float backfaceWeight(float n, Backface mode, float clamp)
+/// The `backface` setting's variants of the term: N, or 1 where N > 0.
+inline float backfaceWeight(float n, Backface mode)
 {
-    switch (mode) {
-        case Backface::cosine: return n;
-        case Backface::clamp: return std::min(1.0f, clamp * n);
-        default: return n > 0.0f ? 1.0f : 0.0f;
-    }
+    if (mode == Backface::cosine) return n;
+    return n > 0.0f ? 1.0f : 0.0f;
 }
 
 /// Eq. 10, 11: mean and variance (floored at kVarianceFloor when > 0 is asked; raw when floor = -inf) of the warped depth.

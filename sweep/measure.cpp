@@ -177,7 +177,7 @@ Settings Calibration::settings()
                .maxSteps = 1024,
                .opacity = OpacityModel::density, .densityK = 2.0f, .transmittance = TransmittanceModel::linear, .subtractOwnPlane = false,
                .voxelLevelBias = -2.0f, .emitterDelayTaps = 2.0f, .emitterDelayVoxels = 0.75f, .emitterSlantCap = 0.5f,
-               .layerSelection = LayerSelection::touched, .backface = Backface::step, .backfaceClamp = 4.0f, .vRadiusScale = 1.0f, .rsmLevelBias = 0.0f,
+               .layerSelection = LayerSelection::touched, .backface = Backface::step, .vRadiusScale = 1.0f, .rsmLevelBias = 0.0f,
                .rsmMinLevel = 0.0f, .gaussian = GaussianMethod::polynomial, .gaussianTableSize = 1024, .filterFraction = FilterFraction::exact,
                .specularAperture = SpecularAperture::roughness, .specularApertureDegrees = 10.0f};
     s.force = {.everything = false};

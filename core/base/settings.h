@@ -60,7 +60,7 @@ struct DirectSettings {
 
 enum class Estimator { paper, slab };
 enum class OpacityModel { none, density };
-enum class Backface { cosine, clamp, step };
+enum class Backface { cosine, step };
 enum class GaussianMethod { table, polynomial, exact };
 enum class Rotation { none, azimuth, strata };  ///< per-pixel over 4x4: none; azimuth of the whole cone set; azimuth and polar angle stratified
 enum class SpecularAperture { fixed, roughness };
@@ -95,8 +95,7 @@ struct ConeSettings {
 
     // LRSM.
     LayerSelection layerSelection = LayerSelection::touched;
-    Backface backface = Backface::step;  ///< `paper`: N of Eq. 8 as it is, min(1, clamp * N), or 1 where N > 0
-    float backfaceClamp = 4.0f;
+    Backface backface = Backface::step;  ///< `paper`: N of Eq. 8 as it is, or 1 where N > 0
     float vRadiusScale = 1.0f;          ///< `paper`: depth window of Eq. 12 is z_c +- this r_c, > 0
     float rsmLevelBias = 0.0f;          ///< added to log2(diameter in LRSM texels)
     float rsmMinLevel = 0.0f;           ///< clamp (Fig. 8's trade), >= 0

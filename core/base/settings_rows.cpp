@@ -181,10 +181,9 @@ void addLookupRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&C::layerSelection>({"layer_selection", "", "layers that hold z_c, weighted by Eq. 15; or every layer touched, weight 1",
                                                "paper Sec. 4.3: centre"},
                                               {"centre", "touched"}));
-    rows.push_back(choice<&C::backface>({"backface", "", "estimator paper: N of Eq. 8, min(1, backface_clamp N), or 1 where N > 0",
+    rows.push_back(choice<&C::backface>({"backface", "", "estimator paper: N of Eq. 8, or 1 where N > 0",
                                          "paper Eq. 8: cosine"},
-                                        {"cosine", "clamp", "step"}));
-    rows.push_back(real<&C::backfaceClamp>({"backface_clamp", "", "factor of backface=clamp", "ours"}, above(0, 1000)));
+                                        {"cosine", "step"}));
     rows.push_back(real<&C::vRadiusScale>({"v_radius_scale", "sphere radii", "estimator paper: depth window of Eq. 12 about z_c",
                                            "paper Eq. 12: 1"},
                                           above(0, 16)));

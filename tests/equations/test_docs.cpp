@@ -73,5 +73,5 @@ TEST_CASE("defaults that are choices: a change of one is a change of every pictu
     CHECK((c.apertureScale == 0.5f && c.step == 0.5f && c.startVoxels == 3.0f && c.normalOffsetVoxels == 1.0f && c.minDiameterVoxels == 1.0f && c.push == 0.0f));
     CHECK((c.transmittanceCutoff == 0.01f && c.densityK == 2.0f && c.voxelLevelBias == -2.0f));
     CHECK((c.emitterDelayTaps == 2.0f && c.emitterDelayVoxels == 0.75f && c.emitterSlantCap == 0.5f));
-    CHECK((c.backfaceClamp == 4.0f && c.vRadiusScale == 1.0f && c.rsmLevelBias == 0.0f && c.rsmMinLevel == 0.0f && c.specularApertureDegrees == 10.0f));
+    CHECK((c.vRadiusScale == 1.0f && c.rsmLevelBias == 0.0f && c.rsmMinLevel == 0.0f && c.specularApertureDegrees == 10.0f));
 }

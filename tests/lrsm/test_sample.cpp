@@ -79,7 +79,6 @@ Algorithm1 algorithm1Twin(const Lrsm& lrsm, const ConeSample& sample, const Cone
         for (int c = 0; c < 3; ++c) n += double(t.normal[c]) / t.normalAlpha * double(sample.toReceiver[c]);
         if (std::abs(n) < 1e-5 && settings.backface == Backface::step) result.nearStep = true;
         if (n <= 0.0) continue;
-        if (settings.backface == Backface::clamp) n = std::min(1.0, n * settings.backfaceClamp);
         if (settings.backface == Backface::step) n = 1.0;
         const double mu = double(t.depth) / t.depthAlpha;
         const double sigma = std::sqrt(std::max(double(t.depthSquared) / t.depthAlpha - mu * mu, double(kVarianceFloor)));
@@ -98,12 +97,12 @@ TEST_CASE("Algorithm 1 equals its double-precision twin with every setting", "[l
     LayerSettings layers;
     layers.depthLayers = GENERATE(1, 3);
     layers.storage = GENERATE(Storage::gpu, Storage::float32);
-    settings.backface = GENERATE(Backface::cosine, Backface::clamp, Backface::step);
+    settings.backface = GENERATE(Backface::cosine, Backface::step);
     settings.layerSelection = GENERATE(LayerSelection::centre, LayerSelection::touched);
     layers.overlap = settings.layerSelection == LayerSelection::centre ? 0.2f : 0.0f;
     settings.gaussian = GENERATE(GaussianMethod::table, GaussianMethod::polynomial, GaussianMethod::exact);
-    settings.vRadiusScale = settings.backface == Backface::clamp ? 1.5f : 1.0f;
-    settings.rsmLevelBias = settings.backface == Backface::clamp ? -0.5f : 0.0f;
+    settings.vRadiusScale = GENERATE(1.0f, 1.5f);
+    settings.rsmLevelBias = settings.vRadiusScale == 1.0f ? 0.0f : -0.5f;
     settings.rsmMinLevel = settings.backface == Backface::step ? 1.25f : 0.0f;
     const NormalCdf phi(settings.gaussian, 4096);
     const Lrsm lrsm = randomLrsm(layers, 41);
@@ -249,11 +248,9 @@ TEST_CASE("the normal term divides by alpha alone and culls back faces", "[lrsm]
     empty.normal = Vec3(0.0f, 1.0f, 0.0f);
     CHECK(normalTerm(empty, Vec3(0.0f, 1.0f, 0.0f)) == 0.0f);  // planted: alpha 0
 
-    CHECK(backfaceWeight(0.1f, Backface::cosine, 4.0f) == 0.1f);
-    CHECK(backfaceWeight(0.1f, Backface::clamp, 4.0f) == 0.4f);
-    CHECK(backfaceWeight(0.5f, Backface::clamp, 4.0f) == 1.0f);
-    CHECK(backfaceWeight(1e-6f, Backface::step, 4.0f) == 1.0f);
-    for (const Backface mode : {Backface::cosine, Backface::clamp, Backface::step}) CHECK(backfaceWeight(0.0f, mode, 4.0f) == 0.0f);
+    CHECK(backfaceWeight(0.1f, Backface::cosine) == 0.1f);
+    CHECK(backfaceWeight(1e-6f, Backface::step) == 1.0f);
+    for (const Backface mode : {Backface::cosine, Backface::step}) CHECK(backfaceWeight(0.0f, mode) == 0.0f);
 }
 
 TEST_CASE("depth moments equal their double twin; zero, negative and empty cases", "[lrsm][eq10][eq11]")

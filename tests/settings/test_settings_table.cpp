@@ -95,7 +95,7 @@ TEST_CASE("settings: each row reads and writes a field of its own", "[settings]"
 TEST_CASE("settings: choices follow the order of their enumeration", "[settings]")
 {
     Settings s;
-    for (const char* text : {"mip_filter=max", "voxelization=raster", "opacity_axes=isotropic", "shadows=off", "estimator=paper", "backface=clamp",
+    for (const char* text : {"mip_filter=max", "voxelization=raster", "opacity_axes=isotropic", "shadows=off", "estimator=paper", "backface=cosine",
                              "gaussian=exact", "rotation=azimuth", "specular_aperture=fixed", "transmittance=exponential", "opacity=none",
                              "layer_selection=centre", "filter_fraction=8bit", "rsm_storage=float32", "layer_half_rounding=nearest_even"})
         applySetting(s, text);
@@ -104,7 +104,7 @@ TEST_CASE("settings: choices follow the order of their enumeration", "[settings]
     CHECK(s.voxel.axes == OpacityAxes::isotropic);
     CHECK(s.direct.shadows == Shadows::off);
     CHECK(s.cones.estimator == Estimator::paper);
-    CHECK(s.cones.backface == Backface::clamp);
+    CHECK(s.cones.backface == Backface::cosine);
     CHECK(s.cones.gaussian == GaussianMethod::exact);
     CHECK(s.cones.rotation == Rotation::azimuth);
     CHECK(s.cones.specularAperture == SpecularAperture::fixed);

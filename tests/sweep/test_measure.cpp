@@ -157,6 +157,6 @@ TEST_CASE("the calibration frame is no preset's: its settings are pinned", "[swe
     for (const SettingDifference& change : differences(preset("balanced"), s)) found[change.key] = change.b;
     const auto json = settingsToJson(s);
     for (const auto& [key, value] : pinned) CHECK(std::stod(value) == json.at(key).get<double>());
-    CHECK(Sha256().add(json.dump()).hex() == "bcc987cd41638f460894e111215375e162c9b031e7850df26e13a286e2adceaa");
+    CHECK(Sha256().add(json.dump()).hex() == "6ad5fbc13b2bc846350f84cbbb23b118e231a77b5823a16c9e4ba2cc1dd4b844");
     CHECK(calibration().run().cpu > 0.0);
 }

@@ -90,14 +90,14 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     const std::vector<Effect> effects = effectsOf(cases, kUnit, 0.02);
     Labels order;
     for (const Effect& e : effects) order.push_back(e.label);
-    CHECK(order == Labels{"step=0.25", "cone_count=9", "cone_count=12", "voxel_resolution=256", "cone_count=4", "voxel_storage=float32", "mip_filter=max", "backface_clamp=2"});
+    CHECK(order == Labels{"step=0.25", "cone_count=9", "cone_count=12", "voxel_resolution=256", "cone_count=4", "voxel_storage=float32", "mip_filter=max", "density_k=1"});
 
     CHECK(effect(effects, "step=0.25").kind == EffectKind::winsBoth);
     CHECK(effect(effects, "mip_filter=max").kind == EffectKind::losesBoth);
     CHECK(effect(effects, "voxel_storage=float32").kind == EffectKind::losesBoth);
     CHECK(effect(effects, "voxel_storage=float32").bytes == Approx(1.0));
-    CHECK(effect(effects, "backface_clamp=2").kind == EffectKind::changesNothing);
-    CHECK(effect(effects, "backface_clamp=2").changed == 0);
+    CHECK(effect(effects, "density_k=1").kind == EffectKind::changesNothing);
+    CHECK(effect(effects, "density_k=1").changed == 0);
 
     // Costs are 2 and 3 times those of the formula: 1 unit is (10 ms x 2 + 10 ms x 3) / 2.
     const Effect& nine = effect(effects, "cone_count=9");
@@ -142,17 +142,17 @@ TEST_CASE("an effect changes something when one scene of several shows it", "[sw
 {
     std::vector<Measurement> rows = syntheticSweep(2);
     for (Measurement& row : rows)
-        if (row.scene == "scene1" && row.label == "backface_clamp=2") {
+        if (row.scene == "scene1" && row.label == "density_k=1") {
             row.irradianceSha256 = "other";
             row.error.rmse = std::hypot(0.3, row.error.noise);
         }
     const std::vector<CaseRows> cases = casesOf(rows);
     const std::vector<Effect> effects = effectsOf(cases, kUnit, 0.02);
-    const Effect& clamp = effect(effects, "backface_clamp=2");
-    CHECK(clamp.kind == EffectKind::losesBoth);
-    CHECK(clamp.changed == 1);
-    CHECK(clamp.error == Approx(std::sqrt(1.5) - 1.0));
-    CHECK(clamp.worstError == Approx(0.5));
+    const Effect& density = effect(effects, "density_k=1");
+    CHECK(density.kind == EffectKind::losesBoth);
+    CHECK(density.changed == 1);
+    CHECK(density.error == Approx(std::sqrt(1.5) - 1.0));
+    CHECK(density.worstError == Approx(0.5));
 }
 
 TEST_CASE("values on no front are named with how far they miss it", "[sweep]")

@@ -104,7 +104,7 @@ TEST_CASE("the report tells scenes, fronts, effects and the path tracer", "[swee
     CHECK(contains(page, "<tr class=\"failed\"><td>mip_filter=max</td>"));
     CHECK(contains(page, "<tr><td>cone_count=12</td>"));
     // On no front: tried alone it changes no bit; the other was tried within a preset alone, which does not tell.
-    CHECK(contains(page, "<tr><td>backface_clamp=2.0</td><td class=\"number\">3</td><td class=\"number\">"));
+    CHECK(contains(page, "<tr><td>density_k=1.0</td><td class=\"number\">3</td><td class=\"number\">"));
     CHECK(contains(page, "</td><td>no</td>"));
     for (const char* reference : {"src=\"http", "href=\"http", "@import", "url(http"}) CHECK(!contains(page, reference));
 }

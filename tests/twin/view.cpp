@@ -137,7 +137,7 @@ std::vector<std::string> coneDefines(const Frame& frame, int maxSteps, std::size
     defines.push_back("MAX_STEPS " + std::to_string(maxSteps));
     defines.push_back("RINGS " + std::to_string(rings));
     defines.push_back(frame.is("gaussian", "table") ? "GAUSSIAN 0" : "GAUSSIAN 1");
-    defines.push_back(choice(frame, "backface", "BACKFACE", {"cosine", "clamp", "step"}));
+    defines.push_back(choice(frame, "backface", "BACKFACE", {"cosine", "step"}));
     const auto when = [&](const char* key, const char* value, const char* define) {
         if (frame.is(key, value)) defines.push_back(define);
     };
@@ -219,7 +219,7 @@ void cones(Frame& frame, const Options& options)
     program.set("normalOffsetVoxels", frame.number("normal_offset_voxels"));
     program.set("varianceFloor", frame.manifest()["constants"]["variance_floor"].get<float>());
     const std::pair<const char*, const char*> reals[] = {
-        {"push", "push"}, {"densityK", "density_k"}, {"backfaceClamp", "backface_clamp"}, {"vRadiusScale", "v_radius_scale"},
+        {"push", "push"}, {"densityK", "density_k"}, {"vRadiusScale", "v_radius_scale"},
         {"transmittanceCutoff", "transmittance_cutoff"}, {"emitterDelayTaps", "emitter_delay_taps"}, {"emitterDelayVoxels", "emitter_delay_voxels"},
         {"emitterSlantCap", "emitter_slant_cap"}, {"rsmLevelBias", "rsm_level_bias"}, {"rsmMinLevel", "rsm_min_level"}};
     for (const auto& [uniform, key] : reals) program.set(uniform, frame.number(key));

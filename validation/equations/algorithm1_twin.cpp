@@ -140,7 +140,6 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
         double n = (t.normal.x * double(cone.toReceiver.x) + t.normal.y * double(cone.toReceiver.y) + t.normal.z * double(cone.toReceiver.z)) / t.normalAlpha;
         if (settings.backface == Backface::step) result.toJump = std::min(result.toJump, std::abs(n));
         if (!(n > 0.0)) continue;
-        if (settings.backface == Backface::clamp) n = std::min(1.0, n * double(settings.backfaceClamp));
         if (settings.backface == Backface::step) n = 1.0;
 
         const double mu = t.depth / t.depthAlpha, sigma2 = std::max(t.depthSquared / t.depthAlpha - mu * mu, kFloor);

@@ -94,13 +94,11 @@ struct Choice {
 std::vector<Choice> choicesOf(LayerSelection selection)
 {
     std::vector<Choice> choices;
-    constexpr Backface kBackfaces[3] = {Backface::cosine, Backface::clamp, Backface::step};
     constexpr GaussianMethod kMethods[3] = {GaussianMethod::table, GaussianMethod::polynomial, GaussianMethod::exact};
     for (int i = 0; i < 6; ++i) {
         Choice c{1 + i % 3, 1 + i % 2, i % 2 == 1, i % 3 ? Storage::gpu : Storage::float32, {}};
         c.cones.layerSelection = selection;
-        c.cones.backface = kBackfaces[i % 3];
-        c.cones.backfaceClamp = 4.0f;
+        c.cones.backface = i < 3 ? Backface::cosine : Backface::step;
         c.cones.gaussian = kMethods[(i / 2) % 3];
         c.cones.gaussianTableSize = 4096;
         c.cones.vRadiusScale = i % 2 ? 1.5f : 1.0f;

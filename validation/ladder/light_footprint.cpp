@@ -269,8 +269,7 @@ TexelSums& TexelSums::operator+=(const TexelSums& other)
 double facingTerm(const TermSettings& terms, double cosine)
 {
     if (!(cosine > 0.0)) return 0.0;
-    if (terms.backface == Backface::step) return 1.0;
-    return terms.backface == Backface::clamp ? std::min(1.0, terms.backfaceClamp * cosine) : cosine;
+    return terms.backface == Backface::step ? 1.0 : cosine;
 }
 
 double gaussianShare(double distance, double variance, double radius)

@@ -30,11 +30,10 @@ struct FootprintRadiance {
 struct TermSettings {
     LayerSelection selection = LayerSelection::centre;
     Backface backface = Backface::cosine;
-    double backfaceClamp = 4.0;
     double vRadiusScale = 1.0;
     static TermSettings of(const ConeSettings& cones)
     {
-        return {cones.layerSelection, cones.backface, double(cones.backfaceClamp), double(cones.vRadiusScale)};
+        return {cones.layerSelection, cones.backface, double(cones.vRadiusScale)};
     }
 };
 

@@ -1,6 +1,6 @@
-// Algorithm 1 and Eq. 1. CENTRED: layer_selection=centre. DENSITY: opacity=density. BACKFACE: 0 cosine, 1 clamp, 2 step.
+// Algorithm 1 and Eq. 1. CENTRED: layer_selection=centre. DENSITY: opacity=density. BACKFACE: 0 cosine, 1 step.
 
-uniform float push, densityK, backfaceClamp, vRadiusScale, transmittanceCutoff;
+uniform float push, densityK, vRadiusScale, transmittanceCutoff;
 
 float stepOpacity(float density, float stepLength)
 {
@@ -35,8 +35,6 @@ vec3 sampleLrsm(Light light, vec3 centre, float radius, vec3 toReceiver)
 #endif
         float n = max(0.0, dot(normal.xyz, toReceiver)) / normal.w;
 #if BACKFACE == 1
-        n = min(1.0, backfaceClamp * n);
-#elif BACKFACE == 2
         n = n > 0.0 ? 1.0 : 0.0;
 #endif
         if (!(n > 0.0)) continue;
