@@ -49,7 +49,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box -o out --size 100", "--size 100"},
         {"render cornell-box -o out --size -5x5", "--size -5x5"},
         {"render cornell-box -o out --size 99999x10", "16384"},
-        {"render cornell-box -o out --preset best", "literal, fast, balanced, accurate"},
+        {"render cornell-box -o out --preset best", "literal, fast, balanced, fine, accurate"},
         {"render cornell-box -o out --set push=nan", "push=nan: must be [0, 16]"},
         {"render cornell-box -o out --set cone_cuont=7", "did you mean cone_count?"},
         {"render cornell-box -o out --set layer_overlap=0.1", "count light twice"},
@@ -68,7 +68,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box --pixel 1", "--pixel 1"},
         {"render cornell-box extra -o out", "extra"},
         {"render cornell-box --view v.json -o out", "v.json"},
-        {"settings --preset best", "literal, fast, balanced, accurate"},
+        {"settings --preset best", "literal, fast, balanced, fine, accurate"},
     }));
     CAPTURE(c.arguments);
     const Sandbox sandbox;

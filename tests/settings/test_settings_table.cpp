@@ -247,7 +247,7 @@ TEST_CASE("settings: every preset is valid; the literal one is the paper's readi
     CHECK(paper.cones.count == 6);
     CHECK(paper.layers.depthLayers * paper.layers.normalLayers == 4);
     CHECK(paper.layers.outermostDecay);
-    CHECK(contains(refusal([] { preset("best"); }), "literal, fast, balanced, accurate"));
+    CHECK(contains(refusal([] { preset("best"); }), "literal, fast, balanced, fine, accurate"));
 }
 
 TEST_CASE("settings: docs/settings.md is what `lrsm settings --markdown` prints", "[settings][docs]")
