@@ -20,14 +20,6 @@ std::string number(double value, const char* format = "%.4g")
     return text;
 }
 
-Image<Vec3> exposed(const Image<Vec3>& picture, float stops)
-{
-    Image<Vec3> result = picture;
-    const float gain = std::exp2(stops);
-    for (Vec3& v : result.texels) v = isFinite(v) ? v * gain : Vec3(0.0f);
-    return result;
-}
-
 /// As a display shows it: clipped and sRGB encoded, in [0, 1].
 Image<Vec3> displayed(const Image<Vec3>& picture)
 {

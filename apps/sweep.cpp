@@ -11,13 +11,14 @@
 #include "core/base/settings_table.h"
 #include "core/report/table.h"
 #include "core/scene/scene_hash.h"
-#include "sweep/front.h"
+#include "sweep/cases.h"
 #include "sweep/operating_points.h"
 #include "sweep/search.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -152,25 +153,14 @@ bool runSearch(const SweepArguments& options, const Settings& base, SweepRun& ru
 
 void printFronts(const std::vector<Measurement>& rows)
 {
-    std::vector<std::string> cases;
-    for (const Measurement& row : rows)
-        if (std::find(cases.begin(), cases.end(), row.caseKey) == cases.end()) cases.push_back(row.caseKey);
-    for (const std::string& key : cases) {
-        std::vector<const Measurement*> of;
-        std::vector<CostError> points;
-        for (const Measurement& row : rows)
-            if (row.caseKey == key && row.kind != RowKind::pathTracer) {
-                of.push_back(&row);
-                points.push_back({row.cost, row.error.net()});
-            }
-        if (of.empty()) continue;
+    for (const CaseRows& one : casesOf(rows)) {
+        if (one.settings.empty()) continue;
         ReportTable table{"", {"settings", "cost", "frame ms", "MB", "net RMSE / mean", "energy", "FLIP"}, {}};
-        for (const std::size_t i : paretoFront(points)) {
-            const Measurement& row = *of[i];
-            table.rows.push_back({row.label, shortNumber(row.cost), shortNumber(row.frame.median), shortNumber(double(row.bytes) * 1e-6), shortNumber(row.error.net()),
-                                  shortNumber(row.error.energy), shortNumber(row.error.flip)});
-        }
-        std::cout << of.front()->scene << ", " << of.front()->width << "x" << of.front()->height << ": " << table.rows.size() << " of " << of.size()
+        for (const Measurement* row : timeFront(one))
+            table.rows.push_back({row->label, shortNumber(row->cost), shortNumber(row->frame.median), shortNumber(double(row->bytes) * 1e-6), shortNumber(row->error.net()),
+                                  shortNumber(row->error.energy), shortNumber(row->error.flip)});
+        const Measurement& any = *one.settings.front();
+        std::cout << any.scene << ", " << any.width << "x" << any.height << ": " << table.rows.size() << " of " << one.settings.size()
                   << " settings on the front of cost (in calibration frames) against error\n"
                   << textTable(table) << "\n";
     }

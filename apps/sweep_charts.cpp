@@ -179,9 +179,7 @@ std::vector<const Measurement*> mostWanted(const std::vector<CaseRows>& cases, c
     }
     for (const CaseRows& one : cases)
         for (const auto& rows : {timeFront(one), one.pathTracer, memoryFront(one)}) addShown(wanted, rows);
-    std::vector<CostError> points;
-    for (const CombinedRow& row : all.settings) points.push_back({row.cost, row.error});
-    for (const std::size_t i : paretoFront(points)) addShown(wanted, all.settings[i].rows);
+    for (const CombinedRow* row : combinedFront(all)) addShown(wanted, row->rows);
     return wanted;
 }
 

@@ -181,12 +181,8 @@ ReportTable frontTable(const std::string& title, const std::vector<const Measure
 ReportTable combinedFrontTable(const CombinedCases& all)
 {
     ReportTable table{"Front over all scenes: over balanced", {"time", "error", "memory", "settings against balanced"}, {}};
-    std::vector<CostError> points;
-    for (const CombinedRow& row : all.settings) points.push_back({row.cost, row.error});
-    for (const std::size_t i : paretoFront(points)) {
-        const CombinedRow& row = all.settings[i];
-        table.rows.push_back({shortNumber(row.cost), shortNumber(row.error), shortNumber(row.bytes), changedText(*row.rows.front())});
-    }
+    for (const CombinedRow* row : combinedFront(all))
+        table.rows.push_back({shortNumber(row->cost), shortNumber(row->error), shortNumber(row->bytes), changedText(*row->rows.front())});
     return table;
 }
 

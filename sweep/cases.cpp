@@ -1,6 +1,6 @@
 #include "sweep/cases.h"
 
-#include "sweep/search.h"
+#include "sweep/relative.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,13 +70,6 @@ std::vector<CombinedRow> combineRows(const std::vector<const CaseRows*>& cases, 
 
 }  // namespace
 
-double geometricMean(const std::vector<double>& values)
-{
-    double sum = 0.0;
-    for (const double value : values) sum += std::log(value);
-    return values.empty() ? 1.0 : std::exp(sum / static_cast<double>(values.size()));
-}
-
 std::vector<CaseRows> casesOf(const std::vector<Measurement>& rows)
 {
     std::vector<CaseRows> cases;
@@ -132,6 +125,15 @@ CombinedCases combineCases(const std::vector<CaseRows>& cases)
     all.pathTracer = combineRows(all.cases, base, all.cases.front()->pathTracer, [](const CaseRows& one, const Measurement& row) { return findSamples(one, row.samples); });
     all.noise = noise.empty() ? 0.0 : geometricMean(noise);
     return all;
+}
+
+std::vector<const CombinedRow*> combinedFront(const CombinedCases& all)
+{
+    std::vector<CostError> points;
+    for (const CombinedRow& row : all.settings) points.push_back({row.cost, row.error});
+    std::vector<const CombinedRow*> front;
+    for (const std::size_t i : paretoFront(points)) front.push_back(&all.settings[i]);
+    return front;
 }
 
 }  // namespace lrsm

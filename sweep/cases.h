@@ -41,8 +41,7 @@ struct CombinedCases {
 };
 /// Points into `cases`.
 CombinedCases combineCases(const std::vector<CaseRows>& cases);
-
-/// exp of the mean of logarithms; 1 for none. Of values > 0.
-double geometricMean(const std::vector<double>& values);
+/// Settings of the Pareto front of error against cost, by rising cost.
+std::vector<const CombinedRow*> combinedFront(const CombinedCases& all);
 
 }  // namespace lrsm

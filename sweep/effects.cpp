@@ -1,7 +1,7 @@
 #include "sweep/effects.h"
 
 #include "core/base/settings_table.h"
-#include "sweep/search.h"
+#include "sweep/relative.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,6 @@
 
 namespace lrsm {
 namespace {
-
-double medianOf(std::vector<double> values)
-{
-    if (values.empty()) return 0.0;
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 /// A row beside the row that it departs from, and what to call the two.
 struct Step {
@@ -67,7 +59,6 @@ bool equalBits(const Step& step)
 {
     return !step.row->irradianceSha256.empty() && step.row->irradianceSha256 == step.base->irradianceSha256;
 }
-
 
 using Group = std::vector<Step>;
 
@@ -199,7 +190,7 @@ double costNoise(const std::vector<CaseRows>& cases)
     for (const CaseRows& one : cases)
         for (const Step& step : stepsOf(one))
             if (equalBits(step) && step.base->cost > 0.0) changes.push_back(std::abs(step.row->cost / step.base->cost - 1.0));
-    return medianOf(std::move(changes));
+    return summarize(std::move(changes)).median;
 }
 
 CalibrationUnit calibrationUnit(const std::vector<Measurement>& rows)
@@ -210,7 +201,7 @@ CalibrationUnit calibrationUnit(const std::vector<Measurement>& rows)
     if (times.empty()) return {};
     const auto [min, max] = std::minmax_element(times.begin(), times.end());
     const double least = *min, most = *max;
-    return {medianOf(std::move(times)), least, most};
+    return {summarize(std::move(times)).median, least, most};
 }
 
 std::vector<TriedValue> triedValues(const std::vector<CaseRows>& cases)

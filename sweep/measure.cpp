@@ -36,13 +36,6 @@ double median(std::vector<double> values)
     return summarize(std::move(values)).median;
 }
 
-/// "rsm 3" -> "rsm".
-std::string withoutNumber(const std::string& pass)
-{
-    const std::size_t last = pass.find_last_not_of("0123456789");
-    return last != std::string::npos && last + 1 < pass.size() && pass[last] == ' ' ? pass.substr(0, last) : pass;
-}
-
 /// What each repeat of a frame took, pass by pass; the lights' passes are summed.
 class PassTimes {
   public:
@@ -53,7 +46,7 @@ class PassTimes {
         for (const PassReport& pass : passes) {
             wall += pass.milliseconds;
             cpu += pass.cpuMilliseconds;
-            timesOf(withoutNumber(pass.name)).back() += pass.milliseconds;
+            timesOf(passFamily(pass.name)).back() += pass.milliseconds;
         }
         wall_.push_back(wall);
         cpu_.push_back(cpu);
@@ -84,7 +77,7 @@ class PassTimes {
 void addBytes(Measurement& row, const std::vector<PassReport>& passes)
 {
     for (const PassReport& pass : passes) {
-        const std::string name = withoutNumber(pass.name);
+        const std::string name = passFamily(pass.name);
         if (name != "voxel mips" && name != "rsm" && name != "lrsm" && name != "gbuffer") continue;
         row.bytes += pass.bytes;
         row.gpuBytes += pass.gpuBytes;
@@ -106,14 +99,6 @@ void setCost(Measurement& row, const std::vector<double>& calibrations)
 {
     row.calibrationCpu = median(calibrations);
     row.cost = row.calibrationCpu > 0.0 ? row.frameCpu / row.calibrationCpu : 0.0;
-}
-
-Image<Vec3> exposed(const Image<Vec3>& picture, float stops)
-{
-    Image<Vec3> result = picture;
-    const float gain = std::exp2(stops);
-    for (Vec3& v : result.texels) v = isFinite(v) ? v * gain : Vec3(0.0f);
-    return result;
 }
 
 }  // namespace

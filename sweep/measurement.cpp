@@ -129,6 +129,12 @@ const std::vector<std::string>& measuredPasses()
     return names;
 }
 
+std::string passFamily(const std::string& pass)
+{
+    const std::size_t last = pass.find_last_not_of("0123456789");
+    return last != std::string::npos && last + 1 < pass.size() && pass[last] == ' ' ? pass.substr(0, last) : pass;
+}
+
 Json measurementJson(const Measurement& row)
 {
     Json json = {{"scene", row.scene},

@@ -76,5 +76,7 @@ Measurement measurementFromJson(const nlohmann::ordered_json& json, const std::s
 
 /// The passes that have a column, in the order of the frame: voxelize, voxel mips, rsm, lrsm, gbuffer, direct, cones, filter, composite.
 const std::vector<std::string>& measuredPasses();
+/// The column of a pass of PassReport: "rsm 3" is one of the lights' passes "rsm".
+std::string passFamily(const std::string& pass);
 
 }  // namespace lrsm

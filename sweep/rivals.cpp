@@ -1,5 +1,7 @@
 #include "sweep/rivals.h"
 
+#include "sweep/relative.h"
+
 #include <algorithm>
 
 namespace lrsm {

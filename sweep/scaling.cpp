@@ -14,15 +14,12 @@ namespace {
 
 constexpr std::array<const char*, 3> kColumnsOfPass = {"_cpu_ms", "_ms", "_bytes"};
 
-/// "rsm 3" is one of the light's passes "rsm".
 std::size_t passIndex(const std::string& name)
 {
     const std::vector<std::string>& passes = measuredPasses();
-    for (std::size_t i = 0; i < passes.size(); ++i) {
-        const std::string& pass = passes[i];
-        if (name == pass || (name.starts_with(pass + " ") && name.find_first_not_of("0123456789", pass.size() + 1) == std::string::npos)) return i;
-    }
-    throw std::logic_error("pass \"" + name + "\" has no column");
+    const auto at = std::find(passes.begin(), passes.end(), passFamily(name));
+    if (at == passes.end()) throw std::logic_error("pass \"" + name + "\" has no column");
+    return static_cast<std::size_t>(at - passes.begin());
 }
 
 std::vector<std::string> makeSeriesNames()

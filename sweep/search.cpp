@@ -14,8 +14,6 @@ namespace lrsm {
 
 namespace {
 
-constexpr double kLeastError = 1e-6;
-
 class FrontSearch {
   public:
     FrontSearch(const Settings& base, const std::vector<Axis>& axes, const SearchOptions& options)
@@ -255,34 +253,6 @@ void requireOption(bool holds, const std::string& what, const std::string& why)
 }
 
 }  // namespace
-
-CostError relativeTo(const Measurement& row, const Measurement& baseline)
-{
-    return {row.cost / baseline.cost, std::max(row.error.net(), kLeastError) / std::max(baseline.error.net(), kLeastError)};
-}
-
-CostError combineScenes(std::span<const CostError> scenes)
-{
-    if (scenes.empty()) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-    CostError sum;
-    for (const CostError& scene : scenes) {
-        sum.cost += std::log(scene.cost);
-        sum.error += std::log(scene.error);
-    }
-    const double count = double(scenes.size());
-    return {std::exp(sum.cost / count), std::exp(sum.error / count)};
-}
-
-CostError combineScenes(const std::vector<Measurement>& rows, const std::vector<Measurement>& baselines)
-{
-    std::vector<CostError> scenes;
-    for (const Measurement& row : rows) {
-        const auto baseline = std::find_if(baselines.begin(), baselines.end(), [&](const Measurement& other) { return other.caseKey == row.caseKey; });
-        if (baseline == baselines.end()) throw InputError("row " + row.key, "no baseline was measured for its case " + row.caseKey + " (" + row.scene + ")");
-        scenes.push_back(relativeTo(row, *baseline));
-    }
-    return combineScenes(scenes);
-}
 
 SearchResult runFrontSearch(const Settings& base, const std::vector<Axis>& axes, const SearchOptions& options)
 {

@@ -2,7 +2,7 @@
 
 #include "sweep/axes.h"
 #include "sweep/front.h"
-#include "sweep/measurement.h"
+#include "sweep/relative.h"
 
 #include <cstdint>
 #include <functional>
@@ -30,16 +30,6 @@
 ///
 /// Everything follows from the seed and from what `evaluate` returns: with stored rows behind it, resuming is replaying.
 namespace lrsm {
-
-/// Cost and net error of a row over those of `baseline`, a row of the same case (the preset `balanced`). Errors below 1e-6 count as 1e-6, so that exact
-/// pictures have ratios.
-CostError relativeTo(const Measurement& row, const Measurement& baseline);
-
-/// Geometric means of cost and error: each scene counts alike, however dear or hard it is. NaN where there is none, or where one of them is NaN.
-CostError combineScenes(std::span<const CostError> scenes);
-
-/// One setting's rows, each over the baseline of its case; InputError when a row's case has no baseline.
-CostError combineScenes(const std::vector<Measurement>& rows, const std::vector<Measurement>& baselines);
 
 struct SearchPoint {
     Settings settings;

@@ -14,6 +14,8 @@ namespace {
 
 constexpr Rgb8 kMagenta{255, 0, 255};
 
+float gainOf(float stops) { return static_cast<float>(exp2Exact(std::clamp(double(stops), -120.0, 120.0))); }
+
 /// Piecewise linear through equally spaced sRGB colours; t in [0, 1].
 Rgb8 ramp(std::span<const std::array<float, 3>> colors, float t)
 {
@@ -65,9 +67,17 @@ float automaticExposure(const Image<Vec3>& picture)
     return static_cast<float>(std::floor(4.0 * stops + 0.5) / 4.0);
 }
 
+Image<Vec3> exposed(const Image<Vec3>& picture, float stops)
+{
+    Image<Vec3> result = picture;
+    const float gain = gainOf(stops);
+    for (Vec3& v : result.texels) v = isFinite(v) ? v * gain : Vec3(0.0f);
+    return result;
+}
+
 Image<Rgb8> tonemap(const Image<Vec3>& picture, float stops)
 {
-    const float gain = static_cast<float>(exp2Exact(std::clamp(double(stops), -120.0, 120.0)));
+    const float gain = gainOf(stops);
     return convertEach(picture, [&](const Vec3& color) {
         if (!isFinite(color)) return kMagenta;
         const auto encode = [&](float value) { return srgb8FromLinear(std::clamp(value * gain, 0.0f, 1.0f)); };

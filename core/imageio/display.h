@@ -17,6 +17,9 @@ struct Rgb8 {
 /// of the picture does not change the exposure. Not-finite pixels are left out. An all-black picture gets 0.
 float automaticExposure(const Image<Vec3>& picture);
 
+/// linear * 2^stops, not clipped: what FLIP and SSIM are given. A pixel that is not finite is black.
+Image<Vec3> exposed(const Image<Vec3>& picture, float stops);
+
 /// linear * 2^stops, clipped to [0, 1], sRGB encoded. A pixel that is not finite is magenta, so that it is seen.
 Image<Rgb8> tonemap(const Image<Vec3>& picture, float stops);
 
