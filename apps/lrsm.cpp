@@ -1,5 +1,5 @@
-#include "apps/commands.h"
-#include "core/base/check.h"
+#include "apps/common/commands.h"
+#include "core/base/errors.h"
 #include "core/base/float_state.h"
 
 #include <algorithm>

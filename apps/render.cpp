@@ -1,14 +1,14 @@
-#include "apps/commands.h"
-#include "apps/common_options.h"
-#include "apps/describe.h"
-#include "apps/frame_files.h"
-#include "apps/memory.h"
-#include "apps/progress.h"
-#include "core/base/check.h"
+#include "apps/common/commands.h"
+#include "apps/common/common_options.h"
+#include "apps/common/describe.h"
+#include "apps/common/frame_files.h"
+#include "apps/common/memory.h"
+#include "apps/common/progress.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
-#include "validation/split.h"
+#include "apps/validate/split.h"
 
 #include <cmath>
 #include <iomanip>

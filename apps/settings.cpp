@@ -1,5 +1,5 @@
-#include "apps/commands.h"
-#include "core/base/settings_table.h"
+#include "apps/common/commands.h"
+#include "core/settings/settings_table.h"
 
 #include <iostream>
 #include <memory>

@@ -1,11 +1,11 @@
 #include "conetrace/render.h"
 
-#include "conetrace/composite.h"
-#include "conetrace/direct.h"
-#include "conetrace/irradiance_filter.h"
+#include "conetrace/frame/composite.h"
+#include "conetrace/frame/direct.h"
+#include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/pass_log.h"
 #include "core/base/float_state.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/check_scene.h"
 #include "voxel/voxelize.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "conetrace/gather.h"
-#include "conetrace/gbuffer.h"
-#include "core/base/settings.h"
+#include "conetrace/lrsm/gather.h"
+#include "conetrace/frame/gbuffer.h"
+#include "core/settings/settings.h"
 #include "lrsm/layers.h"
 
 #include <functional>

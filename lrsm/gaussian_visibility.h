@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/settings.h"
+#include "core/settings/settings.h"
 #include "lrsm/float4.h"
 
 #include <algorithm>

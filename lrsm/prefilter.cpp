@@ -1,7 +1,7 @@
 // Sec. 4.2, 4.3 and 5 of Sugihara, Rauwendaal, Salvi: Layered Reflective Shadow Maps for Voxel-based Indirect Illumination, HPG 2014.
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "lrsm/layers.h"
 #include "lrsm/sample.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/raster/draw_scene.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/light.h"

@@ -1,6 +1,6 @@
 #include "reference/checkpoint.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/hash.h"
 
 #include <bit>

@@ -1,6 +1,6 @@
 #include "reference/embree_scene.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 
 #if __has_include(<embree4/rtcore.h>)

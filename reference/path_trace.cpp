@@ -1,6 +1,6 @@
 #include "reference/path_trace.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
 #include "reference/directions.h"

@@ -1,6 +1,6 @@
 #include "reference/sample_sums.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <cassert>

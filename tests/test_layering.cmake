@@ -1,30 +1,42 @@
 cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
-# The arrows (no others): core <- voxel, lrsm, reference, imageio, report; voxel, lrsm <- conetrace; conetrace, reference <- validation;
-# conetrace <- capture; conetrace, reference <- sweep; all <- apps.
+# The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm <- conetrace;
+# conetrace, reference <- the commands that need libraries of their own <- the program. A folder that holds a target has a row.
 # `reference` shares scene, materials and lights with the passes, and no visibility, filtering or gathering code: so it can judge.
+set(passes core/base core/settings core/scene core/raster voxel lrsm conetrace conetrace/frame conetrace/lrsm)
 set(allowed_core/base core/base)
-set(allowed_core/scene core/base core/scene)
+set(allowed_core/settings core/base core/settings)
+set(allowed_core/scene core/base core/settings core/scene)
 set(allowed_core/raster core/base core/scene core/raster)
 set(allowed_core/imageio core/base core/imageio)
 set(allowed_core/report core/base core/report)
-set(allowed_voxel core/base core/scene core/raster voxel)
-set(allowed_lrsm core/base core/scene core/raster lrsm)
-set(allowed_conetrace core/base core/scene core/raster voxel lrsm conetrace)
+set(allowed_voxel core/base core/settings core/scene core/raster voxel)
+set(allowed_lrsm core/base core/settings core/scene core/raster lrsm)
+set(allowed_conetrace/frame core/base core/settings core/scene core/raster voxel lrsm conetrace/frame conetrace/lrsm)
+set(allowed_conetrace/lrsm ${allowed_conetrace/frame} conetrace/lrsm)
+set(allowed_conetrace ${passes})
 set(allowed_reference core/base core/scene reference)
-set(allowed_validation core/base core/scene core/raster voxel lrsm conetrace reference validation)
-set(passes core/base core/scene core/raster voxel lrsm conetrace)
-set(allowed_validation/equations ${passes} validation/equations)
-set(allowed_validation/ladder ${passes} reference validation validation/ladder)
-set(allowed_validation/extremes ${passes} validation/extremes)
-set(allowed_capture ${passes} core/imageio capture)
-set(allowed_sweep ${passes} core/imageio reference sweep)
-set(allowed_apps ${passes} core/imageio core/report reference validation validation/equations validation/ladder validation/extremes capture sweep apps)
+set(allowed_apps/common ${passes} core/imageio apps/common)
+set(allowed_apps/capture ${passes} core/imageio core/report apps/common apps/capture)
+set(allowed_apps/check ${allowed_apps/capture} apps/check)
+set(allowed_apps/compare core/base core/imageio core/report reference apps/common apps/compare)
+set(allowed_apps/reference core/base core/settings core/scene core/imageio reference apps/common apps/reference)
+set(allowed_apps/validate ${passes} core/report reference apps/common apps/validate)
+set(allowed_apps/validate/equations ${passes} apps/validate/equations)
+set(allowed_apps/validate/ladder ${passes} reference apps/validate apps/validate/ladder)
+set(allowed_apps/validate/extremes ${passes} apps/validate/extremes)
+set(allowed_apps/info ${passes} apps/common apps/info)
+set(allowed_apps/sweep ${passes} core/imageio core/report reference apps/common apps/reference apps/sweep)
+set(allowed_apps/bench ${passes} core/report apps/common apps/sweep apps/bench)
+set(allowed_apps/tune ${passes} core/imageio core/report reference apps/common apps/sweep apps/info apps/tune)
+set(commands apps/capture apps/check apps/compare apps/reference apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes
+             apps/info apps/sweep apps/bench apps/tune)
+list(APPEND allowed_apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes) # the command; the libraries are targets
+set(allowed_apps ${passes} core/imageio core/report reference apps/common ${commands} apps)
 # The second implementation reads and writes arrays, and has nothing of the passes.
-set(allowed_tests/twin core/base core/scene capture tests/twin catch.h scratch.h)
-set(folders core/base core/scene core/raster core/imageio core/report voxel lrsm conetrace reference validation validation/equations
-            validation/ladder validation/extremes capture sweep apps tests/twin)
+set(allowed_tests/twin core/base core/settings core/scene apps/capture apps/check tests/twin catch.h scratch.h)
+set(folders ${passes} core/imageio core/report reference apps/common ${commands} apps tests/twin)
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
@@ -33,7 +45,7 @@ set(owned_embree3 "^reference/")
 set(owned_embree4 "^reference/")
 set(owned_CLI "^apps/")
 set(owned_tbb "^core/base/parallel|^reference/")
-set(owned_boost "^validation/equations/oracle")
+set(owned_boost "^apps/validate/equations/oracle")
 set(owned_epoxy "^tests/twin/(gl|egl)[.]")
 set(owned_oneapi "^core/base/parallel|^reference/")
 

@@ -1,6 +1,6 @@
 #include "voxel/bit_grid.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 
 #include <bit>

@@ -1,6 +1,6 @@
 #include "voxel/opacity_pyramid.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/formats.h"
 #include "core/base/memory.h"
 #include "voxel/empty_levels.h"

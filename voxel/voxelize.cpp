@@ -1,9 +1,9 @@
 #include "voxel/voxelize.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/check_scene.h"
 #include "voxel/voxelize_triangle.h"
 

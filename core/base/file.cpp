@@ -1,6 +1,6 @@
 #include "core/base/file.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <filesystem>
 #include <fstream>

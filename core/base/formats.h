@@ -1,13 +1,14 @@
 #pragma once
 
 #include "core/base/math.h"
-#include "core/base/settings.h"
 
 #include <array>
 #include <cstdint>
 
 /// Exact conversions to and from the GPU's formats, as the D3D11.3 functional specification's ideal defines them.
 namespace lrsm {
+
+enum class HalfRounding { d3d, nearestEven };  ///< toward zero, overflow to 65504 (D3D11); or nearest even (Vulkan's usual)
 
 /// IEEE binary16 bit pattern. `d3d`: toward zero, finite overflow becomes +-65504 (section 3.2.2); `nearestEven`: IEEE default, overflow
 /// becomes infinity. NaN stays NaN (quiet), infinity stays infinity, denormals are kept.

@@ -1,6 +1,6 @@
 #include "core/base/hash.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <openssl/evp.h>
 

@@ -1,6 +1,6 @@
 #include "core/base/memory.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <cstdio>

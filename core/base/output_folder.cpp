@@ -1,6 +1,6 @@
 #include "core/base/output_folder.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <cerrno>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "core/imageio/image_io.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/elementary.h"
 #include "core/base/formats.h"
 

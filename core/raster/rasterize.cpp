@@ -1,6 +1,6 @@
 #include "core/raster/rasterize.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/raster/setup.h"
 #include "core/raster/tile.h"

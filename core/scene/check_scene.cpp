@@ -1,6 +1,6 @@
 #include "core/scene/check_scene.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <limits>
 #include <sstream>

@@ -1,6 +1,6 @@
 #include "core/scene/gltf.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
 #include "core/scene/gltf_read.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 
 #include <nlohmann/json.hpp>
 #include <string>

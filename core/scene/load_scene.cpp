@@ -1,6 +1,6 @@
 #include "core/scene/load_scene.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/float_state.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/defaults.h"

@@ -1,6 +1,6 @@
 #include "core/scene/pose_asset.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/scene/light.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/settings.h"
+#include "core/settings/settings.h"
 #include "core/scene/scene.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "core/scene/view_file.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/scene/defaults.h"
 #include "core/scene/light.h"

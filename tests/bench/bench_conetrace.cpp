@@ -1,10 +1,10 @@
 // Throughput of what follows the G-buffer: cones in cone samples (steps), shadow cones, filter and composite in pixels; and a whole frame, each
 // pass with its share. Rates are per second of CPU time, all threads together: of one core, and steady on a shared machine.
-#include "conetrace/composite.h"
-#include "conetrace/direct.h"
-#include "conetrace/irradiance_filter.h"
+#include "conetrace/frame/composite.h"
+#include "conetrace/frame/direct.h"
+#include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/render.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "voxel/voxelize.h"
 

@@ -1,6 +1,6 @@
 // Throughput of the rasterizer and of the passes on it. Items are triangles unless a counter says fragments.
-#include "conetrace/direct.h"
-#include "conetrace/gbuffer.h"
+#include "conetrace/frame/direct.h"
+#include "conetrace/frame/gbuffer.h"
 #include "core/base/parallel.h"
 #include "core/raster/draw_scene.h"
 #include "core/scene/shapes.h"

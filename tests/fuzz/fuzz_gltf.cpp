@@ -1,6 +1,6 @@
 // Any bytes as a glTF file: a scene that keeps its promises, or an InputError; nothing else, no sanitizer finding.
 // Seeds: the samples and malformed files of LRSM_SCENES, small ones first.
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/scene/load_scene.h"
 
 #include <cstdio>

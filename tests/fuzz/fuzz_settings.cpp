@@ -1,5 +1,5 @@
-#include "core/base/check.h"
-#include "core/base/settings_table.h"
+#include "core/base/errors.h"
+#include "core/settings/settings_table.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Any text as a view file: a view that keeps its promises, or an InputError of one line.
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/scene/view_file.h"
 
 #include <cstdlib>

@@ -1,10 +1,10 @@
 // Holds the frames of goldens.json against this build, pass by pass; README.md beside it says how to change them.
 #include "conetrace/render.h"
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
 

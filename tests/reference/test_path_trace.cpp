@@ -1,7 +1,7 @@
 #include "reference/path_trace.h"
 
 #include "brute_force.h"
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/builtin_scenes.h"
 #include "reference/checkpoint.h"

@@ -1,7 +1,7 @@
 #include "reference/checkpoint.h"
 #include "reference/sample_sums.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/rng.h"
 
 #include "catch.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "capture/npy.h"
+#include "apps/capture/npy.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,10 +1,10 @@
 #include "catch.h"
 #include "scratch.h"
 
-#include "capture/check.h"
-#include "capture/record.h"
+#include "apps/check/check.h"
+#include "apps/capture/record.h"
 #include "core/base/output_folder.h"
-#include "core/base/settings_table.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/report/table.h"
+#include "apps/bench/scaling.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+/// What `lrsm bench` says of its frames: rows, exponents, plots.
+namespace lrsm {
+
+/// An axis with what was measured on it.
+struct MeasuredAxis {
+    ScalingAxis axis;
+    ScalingResult result;
+    std::vector<std::string> leftOut;
+};
+
+/// The machine that measured: processor, cores, compiler, load average (1, 5, 15 minutes).
+nlohmann::ordered_json machineJson();
+
+/// Columns of bench.csv: axis, x, label, repeat, width, height, threads, then every series. One line a frame, newline included.
+std::string benchCsvHead();
+std::string benchCsvRow(const ScalingAxis& axis, const ScalingSample& sample);
+
+/// Exponents of the series that theory speaks of: power law, with a constant part, expected.
+ReportTable exponentTable(const MeasuredAxis& measured);
+/// Median times of a frame and its largest passes, and the work, a row a point.
+ReportTable pointTable(const MeasuredAxis& measured);
+
+nlohmann::ordered_json benchJson(const std::vector<MeasuredAxis>& axes, const nlohmann::ordered_json& machine, int repeat);
+/// Self-contained: one log-log plot an axis, both tables.
+std::string benchPage(const std::vector<MeasuredAxis>& axes, const nlohmann::ordered_json& machine, int repeat);
+
+}  // namespace lrsm

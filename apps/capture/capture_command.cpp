@@ -1,0 +1,111 @@
+#include "apps/common/commands.h"
+#include "apps/common/common_options.h"
+#include "apps/common/describe.h"
+#include "apps/common/memory.h"
+#include "apps/common/progress.h"
+#include "apps/capture/pictures.h"
+#include "apps/capture/record.h"
+#include "core/base/errors.h"
+#include "core/base/output_folder.h"
+#include "core/base/parallel.h"
+
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace lrsm {
+
+namespace {
+
+struct Options : CommonOptions {
+    std::string output;
+    std::vector<std::string> only;
+    bool noDds = false, noPictures = false;
+};
+
+/// The nearest folder that exists: where the disk's free space is asked.
+std::uintmax_t freeBytes(std::filesystem::path path)
+{
+    std::error_code error;
+    while (!std::filesystem::exists(path, error) && path.has_relative_path()) path = path.parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(path, error);
+    return error ? std::numeric_limits<std::uintmax_t>::max() : space.available;
+}
+
+void refuseFullDisk(const OutputFolder& folder, std::size_t bytes)
+{
+    const std::uintmax_t available = freeBytes(folder.path());
+    if (bytes > available)
+        throw MachineError(folder.path().string(), "this capture needs " + megabytes(bytes) + ", the disk has " + megabytes(available) +
+                                                       "; leave out --only passes, use --no-dds, or lower --size or the resolutions");
+}
+
+void printSummary(const Capture& capture, std::size_t bytes, const std::string& where)
+{
+    for (const CapturedPass& pass : capture.passes) {
+        std::size_t held = 0, count = 0;
+        for (const Buffer& buffer : capture.buffers)
+            if (buffer.pass == pass.name) {
+                held += buffer.bytes.size();
+                ++count;
+            }
+        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::setw(4) << count << " buffers" << std::setw(13) << megabytes(held) << "\n";
+    }
+    std::cout << where << ": " << capture.buffers.size() << " buffers, " << megabytes(bytes) << " with their textures; manifest.json says what is what\n";
+}
+
+int run(const Options& options)
+{
+    if (options.output.empty()) throw InputError("capture", "needs -o FOLDER");
+    const Settings settings = chosenSettings(options);
+    const IVec2 size = chosenSize(options);
+    OutputFolder folder(options.output);
+
+    const ThreadLimit threads(options.threads);
+    const Scene scene = loadChosenScene(options);
+    const Camera camera = chosenCamera(scene, options);
+    const Requirements needs = analyseRequirements(scene, settings.force);
+
+    Progress progress(options.quiet);
+    RecordOptions record{.width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds,
+                         .progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); }};
+    const std::size_t predicted =
+        predictCaptureBytes(chosenBuffers(scene, needs, settings, record, countLayersKept(scene, needs, settings)));
+    refuseFullDisk(folder, predicted);
+    if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(predicted) << std::endl;
+
+    const Capture capture = recordCapture(scene, camera, needs, settings, record, LRSM_VERSION);
+    progress.show("writing", 0.0);
+    writeCapture(folder, capture);
+    if (!options.noPictures) writePictures(folder, capture);
+    folder.commit();
+    progress.clear();
+
+    const std::size_t bytes = predictCaptureBytes(capture.buffers);
+    if (options.json)
+        std::cout << jsonText({{"folder", options.output}, {"predicted_bytes", predicted}, {"bytes", bytes}, {"buffers", capture.buffers.size()}});
+    else if (!options.quiet)
+        printSummary(capture, bytes, folder.path().string());
+    return 0;
+}
+
+}  // namespace
+
+Command addCapture(CLI::App& program)
+{
+    CLI::App* parser = program.add_subcommand("capture", "Write every pass's output, bit for bit, to hold another implementation against (docs/capture.md)");
+    const auto options = std::make_shared<Options>();
+    addSceneOptions(*parser, *options);
+    addSettingOptions(*parser, *options);
+    addPictureOptions(*parser, *options);
+    addRunOptions(*parser, *options);
+    parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
+    parser->add_option("--only", options->only, "passes whose buffers are kept: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")->delimiter(',')->allow_extra_args(false);
+    parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");
+    parser->add_flag("--no-pictures", options->noPictures, "leave out the EXR files and the contact sheet");
+    return {parser, [options] { return run(*options); }};
+}
+
+}  // namespace lrsm

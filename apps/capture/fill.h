@@ -1,0 +1,62 @@
+#pragma once
+
+#include "apps/capture/capture.h"
+#include "core/base/errors.h"
+
+#include <cassert>
+#include <cstring>
+
+/// Between typed arrays and the bytes of buffers (internal to the conversions).
+namespace lrsm {
+
+/// The buffer of this name in a list; nullptr when it is left out.
+inline Buffer* findBuffer(std::vector<Buffer>& buffers, const std::string& name)
+{
+    for (Buffer& buffer : buffers)
+        if (buffer.name == name) return &buffer;
+    return nullptr;
+}
+
+/// Zeroed bytes of the size that shape and dtype say, seen as T.
+template <class T>
+T* allocate(Buffer& buffer)
+{
+    assert(sizeof(T) == sizeOf(buffer.dtype));
+    buffer.bytes.assign(buffer.elements() * sizeof(T), std::byte{0});
+    return reinterpret_cast<T*>(buffer.bytes.data());
+}
+
+/// Copies values that lie in memory just as the buffer has them.
+template <class T>
+void copyTo(std::vector<Buffer>& buffers, const std::string& name, const std::vector<T>& values)
+{
+    Buffer* buffer = findBuffer(buffers, name);
+    if (!buffer) return;
+    assert(buffer->elements() * sizeOf(buffer->dtype) == values.size() * sizeof(T));
+    buffer->bytes.resize(values.size() * sizeof(T));
+    if (!values.empty()) std::memcpy(buffer->bytes.data(), values.data(), buffer->bytes.size());
+}
+
+/// The buffer's elements as T; InputError when it is not there, or of another element type or count.
+template <class T>
+std::span<const T> valuesOf(const Capture& capture, const std::string& name, Dtype dtype, std::size_t count)
+{
+    const Buffer& buffer = capture.at(name);
+    if (buffer.dtype != dtype) throw InputError(name, "holds " + std::string(nameOf(buffer.dtype)) + " where " + std::string(nameOf(dtype)) + " is needed");
+    if (buffer.bytes.size() != count * sizeOf(dtype))
+        throw InputError(name, "holds " + std::to_string(buffer.bytes.size() / sizeOf(dtype)) + " elements where " + std::to_string(count) + " are needed");
+    return buffer.as<T>();
+}
+
+/// The same as a vector of a type that is made of such elements.
+template <class T>
+std::vector<T> copyFrom(const Capture& capture, const std::string& name, Dtype dtype, std::size_t count)
+{
+    const std::size_t perItem = sizeof(T) / sizeOf(dtype);
+    const auto bytes = valuesOf<std::byte>(capture, name, dtype, count * perItem);
+    std::vector<T> values(count);
+    if (count) std::memcpy(values.data(), bytes.data(), count * sizeof(T));
+    return values;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,202 @@
+#include "apps/capture/npy.h"
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <charconv>
+#include <cstring>
+#include <limits>
+
+namespace lrsm {
+
+static_assert(std::endian::native == std::endian::little, "buffers are written as they lie in memory");
+
+namespace {
+
+struct DtypeRow {
+    std::string_view name, descr;
+    std::size_t bytes;
+};
+constexpr std::array<DtypeRow, 8> kDtypes = {{{"u1", "|u1", 1}, {"u2", "<u2", 2}, {"u4", "<u4", 4}, {"u8", "<u8", 8},
+                                             {"i4", "<i4", 4}, {"f2", "<f2", 2}, {"f4", "<f4", 4}, {"f8", "<f8", 8}}};
+
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
+constexpr std::size_t kPreamble = 10;  // magic, version, header length
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kMaxAxes = 8;
+constexpr const char* kResave = "save it with numpy.save(file, numpy.ascontiguousarray(a, '<f4')) or another little-endian type";
+
+/// Reads the header's dict, which is Python text: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }
+class HeaderText {
+  public:
+    HeaderText(std::string_view text, const std::string& place) : text_(text), place_(place) {}
+
+    [[noreturn]] void fail(const std::string& why) const { throw InputError(place_, "is no readable .npy: " + why); }
+    void skipSpace() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size())); }
+    bool take(std::string_view word)
+    {
+        skipSpace();
+        if (!text_.starts_with(word)) return false;
+        text_.remove_prefix(word.size());
+        return true;
+    }
+    void expect(std::string_view word)
+    {
+        if (!take(word)) fail("its header lacks \"" + std::string(word) + "\"");
+    }
+    std::string_view quoted()
+    {
+        expect("'");
+        const std::size_t end = text_.find('\'');
+        if (end == std::string_view::npos) fail("its header breaks off");
+        const std::string_view word = text_.substr(0, end);
+        text_.remove_prefix(end + 1);
+        return word;
+    }
+    std::size_t number()
+    {
+        skipSpace();
+        std::size_t value = 0;
+        const auto [next, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
+        if (error != std::errc()) fail("its shape holds something that is no size");
+        text_.remove_prefix(static_cast<std::size_t>(next - text_.data()));
+        return value;
+    }
+    std::vector<std::size_t> tuple()
+    {
+        std::vector<std::size_t> values;
+        expect("(");
+        while (!take(")")) {
+            values.push_back(number());
+            if (values.size() > kMaxAxes) fail("it has more than " + std::to_string(kMaxAxes) + " axes");
+            if (!take(",")) {
+                expect(")");
+                break;
+            }
+        }
+        return values;
+    }
+    bool done()
+    {
+        skipSpace();
+        return text_.empty();
+    }
+
+  private:
+    std::string_view text_;
+    const std::string& place_;
+};
+
+Dtype dtypeOfDescr(std::string_view descr, const std::string& place)
+{
+    for (std::size_t i = 0; i < kDtypes.size(); ++i)
+        if (kDtypes[i].descr == descr) return static_cast<Dtype>(i);
+    throw InputError(place, "holds elements of type '" + std::string(descr) + "', which captures do not use; " + kResave);
+}
+
+NpyArray parseHeader(std::string_view text, const std::string& place)
+{
+    NpyArray array;
+    HeaderText header(text, place);
+    bool descr = false, order = false, shape = false;
+    header.expect("{");
+    while (!header.take("}")) {
+        const std::string_view key = header.quoted();
+        header.expect(":");
+        if (key == "descr" && !descr) {
+            array.dtype = dtypeOfDescr(header.quoted(), place);
+            descr = true;
+        } else if (key == "fortran_order" && !order) {
+            if (header.take("True")) throw InputError(place, std::string("is in Fortran order; ") + kResave);
+            header.expect("False");
+            order = true;
+        } else if (key == "shape" && !shape) {
+            array.shape = header.tuple();
+            shape = true;
+        } else {
+            header.fail("its header has the unexpected key \"" + std::string(key) + "\"");
+        }
+        header.take(",");
+    }
+    if (!descr || !order || !shape) header.fail("its header lacks descr, fortran_order or shape");
+    if (!header.done()) header.fail("text follows its header");
+    return array;
+}
+
+}  // namespace
+
+std::size_t sizeOf(Dtype dtype) { return kDtypes[static_cast<std::size_t>(dtype)].bytes; }
+
+std::string_view nameOf(Dtype dtype) { return kDtypes[static_cast<std::size_t>(dtype)].name; }
+
+Dtype dtypeByName(std::string_view name, const std::string& place)
+{
+    for (std::size_t i = 0; i < kDtypes.size(); ++i)
+        if (kDtypes[i].name == name) return static_cast<Dtype>(i);
+    throw InputError(place, "\"" + std::string(name) + "\" is no element type; they are u1, u2, u4, u8, i4, f2, f4, f8");
+}
+
+std::size_t elementCount(const std::vector<std::size_t>& shape, const std::string& place)
+{
+    constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() / 8;
+    std::size_t count = 1;
+    for (const std::size_t extent : shape) {
+        if (extent != 0 && count > kMost / extent) throw InputError(place, "its shape is larger than any file");
+        count *= extent;
+    }
+    return count;
+}
+
+std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape)
+{
+    std::string tuple;
+    for (const std::size_t extent : shape) tuple += (tuple.empty() ? "" : ", ") + std::to_string(extent);
+    if (shape.size() == 1) tuple += ',';  // Python's tuple of one
+    std::string text = "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) +
+                       "', 'fortran_order': False, 'shape': (" + tuple + "), }";
+    // Blanks and a newline bring the data to a multiple of 64.
+    text.append((kAlignment - (kPreamble + text.size() + 1) % kAlignment) % kAlignment, ' ');
+    text += '\n';
+    const char preamble[] = {1, 0, static_cast<char>(text.size() & 255), static_cast<char>(text.size() >> 8)};
+    return std::string(kNpyMagic) + std::string(preamble, sizeof preamble) + text;
+}
+
+std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& shape, std::span<const std::byte> bytes)
+{
+    assert(bytes.size() == elementCount(shape, "npy") * sizeOf(dtype));
+    const std::string header = npyHeader(dtype, shape);
+    std::vector<std::byte> file(header.size() + bytes.size());
+    std::memcpy(file.data(), header.data(), header.size());
+    if (!bytes.empty()) std::memcpy(file.data() + header.size(), bytes.data(), bytes.size());
+    return file;
+}
+
+NpyArray decodeNpy(std::span<const std::byte> file, const std::string& place)
+{
+    const auto* text = reinterpret_cast<const char*>(file.data());
+    if (file.size() < kPreamble || std::string_view(text, kNpyMagic.size()) != kNpyMagic) throw InputError(place, "is no .npy file");
+    if (file[6] != std::byte{1} || file[7] != std::byte{0})
+        throw InputError(place, "is .npy of version " + std::to_string(int(file[6])) + "." + std::to_string(int(file[7])) + "; only 1.0 is read");
+    const std::size_t headerSize = static_cast<std::size_t>(file[8]) | static_cast<std::size_t>(file[9]) << 8;
+    if (file.size() < kPreamble + headerSize) throw InputError(place, "is no readable .npy: it ends within its header");
+
+    NpyArray array = parseHeader(std::string_view(text + kPreamble, headerSize), place);
+    const std::size_t expected = elementCount(array.shape, place) * sizeOf(array.dtype), held = file.size() - kPreamble - headerSize;
+    if (held != expected)
+        throw InputError(place, "holds " + std::to_string(held) + " bytes of data where its shape needs " + std::to_string(expected));
+    const auto data = file.subspan(kPreamble + headerSize);
+    array.bytes.assign(data.begin(), data.end());
+    return array;
+}
+
+NpyArray readNpy(const std::string& path)
+{
+    const std::vector<unsigned char> file = readFile(path);
+    return decodeNpy(std::as_bytes(std::span(file)), path);
+}
+
+}  // namespace lrsm

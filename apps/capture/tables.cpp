@@ -1,0 +1,71 @@
+#include "apps/capture/tables.h"
+
+#include "conetrace/frame/specular_albedo.h"
+
+#include <cstring>
+
+namespace lrsm {
+
+namespace {
+
+constexpr int kPattern = 4;  ///< edge of the square of pixels over which directions alternate
+constexpr std::size_t kStepColumns = 7;
+
+template <class T>
+Table tableOf(std::string name, Dtype dtype, std::vector<std::size_t> shape, const std::vector<T>& values)
+{
+    Table table{std::move(name), dtype, std::move(shape), std::vector<std::byte>(values.size() * sizeof(T))};
+    if (!values.empty()) std::memcpy(table.bytes.data(), values.data(), table.bytes.size());
+    return table;
+}
+
+GatherPlan planFor(const Requirements& needs, const Settings& settings)
+{
+    OpacityPyramid grid;  // schedules depend on the grid's resolution alone
+    grid.base.frame.resolution = settings.voxel.resolution;
+    return planGather(grid, needs, settings.cones);
+}
+
+Table rotations(Rotation rotation)
+{
+    std::vector<std::uint8_t> pattern;
+    for (int y = 0; y < kPattern; ++y)
+        for (int x = 0; x < kPattern; ++x) pattern.push_back(static_cast<std::uint8_t>(rotationOfPixel(x, y, rotation)));
+    return tableOf("tables.rotation", Dtype::u1, {kPattern, kPattern}, pattern);
+}
+
+void addSchedules(CaptureTables& tables)
+{
+    std::vector<const MarchSchedule*> all;
+    for (const MarchSchedule& schedule : tables.plan.ringSchedules) all.push_back(&schedule);
+    for (const MarchSchedule& schedule : tables.plan.specularSchedules) all.push_back(&schedule);
+
+    const std::size_t longest = tables.plan.longestSchedule;
+    std::vector<float> values(all.size() * longest * kStepColumns, 0.0f);
+    std::vector<std::uint32_t> counts;
+    for (std::size_t s = 0; s < all.size(); ++s) {
+        counts.push_back(static_cast<std::uint32_t>(all[s]->steps.size()));
+        float* row = values.data() + s * longest * kStepColumns;
+        for (const MarchStep& step : all[s]->steps)
+            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f}) *row++ = value;
+    }
+    tables.schedules = tableOf("tables.schedules", Dtype::f4, {all.size(), longest, kStepColumns}, values);
+    tables.steps = tableOf("tables.schedule_steps", Dtype::u4, {all.size()}, counts);
+}
+
+}  // namespace
+
+CaptureTables makeTables(const Requirements& needs, const Settings& settings)
+{
+    CaptureTables tables{planFor(needs, settings), {}, {}, {}, {}, {}, {}};
+    const auto cones = static_cast<std::size_t>(tables.plan.cones.count);
+    tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);
+    tables.rotation = rotations(settings.cones.rotation);
+    addSchedules(tables);
+    if (const std::vector<float>& phi = tables.plan.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
+    if (needs.specular)
+        tables.specularAlbedo = tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());
+    return tables;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "apps/capture/npy.h"
+#include "conetrace/lrsm/gather_setup.h"
+
+namespace lrsm {
+
+struct Table {
+    std::string name;
+    Dtype dtype = Dtype::f4;
+    std::vector<std::size_t> shape;  ///< empty: this frame does not use it
+    std::vector<std::byte> bytes;
+};
+
+/// What a frame works out once from its settings, as arrays: pass "tables".
+struct CaptureTables {
+    GatherPlan plan;
+    Table directions, rotation, schedules, steps, gaussian, specularAlbedo;
+
+    std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo}; }
+};
+CaptureTables makeTables(const Requirements& needs, const Settings& settings);
+
+}  // namespace lrsm

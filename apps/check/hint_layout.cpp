@@ -1,0 +1,216 @@
+// Right values in the wrong places.
+#include "apps/check/hint_trial.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lrsm {
+
+namespace {
+
+constexpr std::size_t kNowhere = ~std::size_t(0);
+constexpr double kSampleFits = 0.98;
+
+/// Which element of the expected buffer stands where each of the candidate's does, axis by axis.
+struct Rearrangement {
+    std::vector<std::size_t> extents, strides;
+    std::vector<std::vector<std::size_t>> index;  ///< of each axis: where to read; kNowhere: from outside
+
+    explicit Rearrangement(const Buffer& buffer) : extents(extentsOf(buffer)), strides(extents.size(), 1), index(extents.size())
+    {
+        for (std::size_t axis = extents.size(); axis-- > 0;) {
+            if (axis + 1 < extents.size()) strides[axis] = strides[axis + 1] * extents[axis + 1];
+            index[axis].resize(extents[axis]);
+            std::iota(index[axis].begin(), index[axis].end(), std::size_t(0));
+        }
+    }
+    std::size_t source(std::size_t element) const
+    {
+        std::size_t from = 0;
+        for (std::size_t axis = extents.size(); axis-- > 0;) {
+            const std::size_t i = index[axis][element % extents[axis]];
+            if (i == kNowhere) return kNowhere;
+            from += i * strides[axis];
+            element /= extents[axis];
+        }
+        return from;
+    }
+};
+
+class LayoutSuspicions {
+  public:
+    explicit LayoutSuspicions(HintTrial& trial) : trial_(trial), buffer_(trial.expected()), plain_(buffer_), names_(axisNamesOf(buffer_))
+    {
+        spatial_ = plain_.extents.size() - (buffer_.components.empty() ? 0 : 1);
+    }
+
+    void run()
+    {
+        flips();
+        transposes();
+        exchangedAlong();
+        exchangedComponents();
+        shifts();
+        otherBuffers();
+    }
+
+  private:
+    bool suspect(const std::string& text, const Rearrangement& r)
+    {
+        return trial_.suspect(text, [&](std::size_t i) {
+            const std::size_t from = r.source(i);
+            return from == kNowhere ? trial_.candidateAt(i) : trial_.expectedAt(from);  // what came from outside is anybody's guess
+        });
+    }
+    bool isLine(std::size_t axis) const { return names_[axis] == "row" || names_[axis] == "column" || names_[axis] == "x" || names_[axis] == "y" || names_[axis] == "z"; }
+
+    void flips()
+    {
+        std::vector<std::size_t> lines;
+        for (std::size_t axis = 0; axis < spatial_; ++axis)
+            if (isLine(axis) && plain_.extents[axis] > 1) lines.push_back(axis);
+        for (const std::size_t axis : lines) {
+            Rearrangement r = plain_;
+            std::reverse(r.index[axis].begin(), r.index[axis].end());
+            suspect(names_[axis] + (names_[axis].size() > 1 ? "s are flipped" : " is flipped"), r);
+        }
+        if (lines.size() < 2) return;
+        Rearrangement r = plain_;
+        for (std::size_t i = lines.size() - 2; i < lines.size(); ++i) std::reverse(r.index[lines[i]].begin(), r.index[lines[i]].end());
+        suspect(names_[lines[lines.size() - 2]] + "s and " + names_[lines.back()] + "s are both flipped", r);
+    }
+
+    void transposes()
+    {
+        for (std::size_t a = 0; a < spatial_; ++a)
+            for (std::size_t b = a + 1; b < spatial_; ++b) {
+                if (!isLine(a) || !isLine(b) || plain_.extents[a] != plain_.extents[b] || plain_.extents[a] < 2) continue;
+                Rearrangement r = plain_;
+                std::swap(r.strides[a], r.strides[b]);
+                suspect(names_[a] + (names_[a].size() > 1 ? "s" : "") + " and " + names_[b] + (names_[b].size() > 1 ? "s" : "") + " are exchanged (transposed)", r);
+            }
+    }
+
+    void shifts()
+    {
+        for (std::size_t axis = 0; axis < spatial_; ++axis) {
+            if (!isLine(axis) || plain_.extents[axis] < 4) continue;
+            for (const int by : {1, -1}) {
+                Rearrangement r = plain_;
+                for (std::size_t i = 0; i < plain_.extents[axis]; ++i) {
+                    const bool outside = by > 0 ? i == 0 : i + 1 == plain_.extents[axis];
+                    r.index[axis][i] = outside ? kNowhere : by > 0 ? i - 1 : i + 1;
+                }
+                suspect("all is one " + names_[axis] + " too far " + (by > 0 ? "up (towards higher " : "down (towards lower ") + names_[axis] + "s)", r);
+            }
+        }
+    }
+
+    /// Wrong elements with index `at` along `axis` that fit what is expected at `from`.
+    bool sampleFits(std::size_t axis, std::size_t at, std::size_t from) const
+    {
+        std::size_t tried = 0, fitting = 0;
+        for (const std::size_t i : trial_.sample()) {
+            if (i / plain_.strides[axis] % plain_.extents[axis] != at) continue;
+            ++tried;
+            fitting += trial_.fits(trial_.expectedAt(i + from * plain_.strides[axis] - at * plain_.strides[axis]), i) ? 1 : 0;
+        }
+        return tried > 0 && static_cast<double>(fitting) >= kSampleFits * static_cast<double>(tried);
+    }
+    bool anyWrong(std::size_t axis, std::size_t at) const
+    {
+        return std::any_of(trial_.sample().begin(), trial_.sample().end(), [&](std::size_t i) { return i / plain_.strides[axis] % plain_.extents[axis] == at; });
+    }
+
+    /// Layers or cones in another order.
+    void exchangedAlong()
+    {
+        for (std::size_t axis = 0; axis < spatial_; ++axis) {
+            if (isLine(axis) || plain_.extents[axis] < 2 || plain_.extents[axis] > 256) continue;
+            Rearrangement r = plain_;
+            std::string moved;
+            std::size_t count = 0, last = 0;
+            for (std::size_t at = 0; at < plain_.extents[axis]; ++at) {
+                if (!anyWrong(axis, at)) continue;
+                for (std::size_t from = 0; from < plain_.extents[axis]; ++from)
+                    if (from != at && sampleFits(axis, at, from)) {
+                        r.index[axis][at] = from;
+                        moved += (moved.empty() ? "" : ", ") + std::to_string(at) + " holds " + std::to_string(from);
+                        last = at;
+                        ++count;
+                        break;
+                    }
+            }
+            if (count == 0) continue;
+            const std::size_t other = r.index[axis][last];
+            const bool pair = count == 2 && r.index[axis][other] == last;
+            suspect(pair ? names_[axis] + "s " + std::to_string(std::min(last, other)) + " and " + std::to_string(std::max(last, other)) + " are exchanged"
+                         : names_[axis] + "s are in another order: " + moved, r);
+        }
+    }
+
+    /// Channels exchanged or negated.
+    void exchangedComponents()
+    {
+        const std::size_t n = buffer_.components.size();
+        if (n < 2) return;
+        std::vector<std::size_t> from(n);
+        std::iota(from.begin(), from.end(), std::size_t(0));
+        std::string moved;
+        std::size_t count = 0, last = 0;
+        for (std::size_t c = 0; c < n; ++c) {
+            if (!trial_.wrongComponents()[c]) continue;
+            for (std::size_t source = 0; source < n; ++source)
+                if (source != c && !buffer_.components[source].empty() && sampleFits(componentAxis(), c, source)) {
+                    from[c] = source;
+                    moved += (moved.empty() ? "'" : ", '") + buffer_.components[c] + "' holds '" + buffer_.components[source] + "'";
+                    last = c;
+                    ++count;
+                    break;
+                }
+        }
+        if (count == 0) return;
+        Rearrangement r = plain_;
+        r.index.back() = from;
+        const bool pair = count == 2 && from[from[last]] == last;
+        suspect(pair ? "channels '" + buffer_.components[from[last]] + "' and '" + buffer_.components[last] + "' are exchanged" : "channels are mixed up: " + moved, r);
+    }
+    std::size_t componentAxis() const { return plain_.extents.size() - 1; }
+
+    void otherBuffers()
+    {
+        for (const Buffer& other : trial_.inputs().buffers) {
+            if (other.name == buffer_.name || other.bytes.size() != buffer_.bytes.size() || other.dtype != buffer_.dtype || other.shape != buffer_.shape ||
+                other.encoding != buffer_.encoding)
+                continue;
+            trial_.suspect("it holds " + other.name, [&](std::size_t i) { return decodedValue(other, i); });
+        }
+    }
+
+    HintTrial& trial_;
+    const Buffer& buffer_;
+    Rearrangement plain_;
+    std::vector<std::string> names_;
+    std::size_t spatial_ = 0;
+};
+
+/// numpy.packbits without bitorder="little".
+void suspectBitOrder(HintTrial& trial)
+{
+    trial.suspect("the bits of each byte are in reverse order (lowest bit first is expected; numpy: bitorder=\"little\")",
+                  [&](std::size_t i) { return trial.expectedAt(i ^ 7); });
+}
+
+}  // namespace
+
+void suspectLayout(HintTrial& trial)
+{
+    if (trial.expected().encoding == Encoding::bits) {
+        suspectBitOrder(trial);
+        if (trial.expected().dtype == Dtype::u8) return;  // the same voxels as voxel.bits, which says it better
+        trial.suspect("occupied and empty are exchanged", [&](std::size_t i) { return 1.0 - trial.expectedAt(i); });
+    }
+    if (!trial.expected().shape.empty()) LayoutSuspicions(trial).run();
+}
+
+}  // namespace lrsm

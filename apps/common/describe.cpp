@@ -1,0 +1,140 @@
+#include "apps/common/describe.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace lrsm {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 57.29577951308232;
+
+const char* typeName(LightType type)
+{
+    switch (type) {
+    case LightType::directional: return "directional";
+    case LightType::spot: return "spot";
+    case LightType::cubeFace: break;
+    }
+    return "cube face";
+}
+
+/// Four significant digits: for reading, not for computing.
+std::string brief(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+std::string brief(const Vec3& v) { return "(" + brief(v.x) + ", " + brief(v.y) + ", " + brief(v.z) + ")"; }
+
+std::string describe(const Light& light)
+{
+    std::string text = typeName(light.type);
+    if (light.type == LightType::directional)
+        text += ", direction " + brief(light.direction) + ", irradiance " + brief(light.intensity) + " W/m^2";
+    else
+        text += " at " + brief(light.position) + ", direction " + brief(light.direction) + ", intensity " + brief(light.intensity) + " W/sr";
+    if (light.type == LightType::spot)
+        text += ", cone " + brief(light.innerConeAngle * kDegrees) + " .. " + brief(light.outerConeAngle * kDegrees) + " degrees";
+    if (light.type == LightType::cubeFace) text += " (one of six that make a point light)";
+    return text;
+}
+
+std::string describe(const Camera& camera)
+{
+    return std::string(camera.perspective ? "perspective" : "orthographic") + " at " + brief(camera.position) + ", looking along " +
+           brief(camera.forward) + (camera.perspective ? ", vertical field of view " + brief(camera.verticalFov * kDegrees) + " degrees"
+                                                       : ", " + brief(camera.verticalExtent) + " m high");
+}
+
+std::size_t countDecoded(const Scene& scene)
+{
+    std::size_t count = 0;
+    for (const Texture& texture : scene.textures) count += !texture.image.empty();
+    return count;
+}
+
+}  // namespace
+
+std::string jsonText(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json cameraJson(const Camera& camera)
+{
+    Json json = {{"name", camera.name},
+                 {"position", vectorJson(camera.position)},
+                 {"forward", vectorJson(camera.forward)},
+                 {"up", vectorJson(camera.up)},
+                 {"perspective", camera.perspective}};
+    if (camera.perspective)
+        json["vertical_fov_degrees"] = camera.verticalFov * kDegrees;
+    else
+        json["vertical_extent"] = camera.verticalExtent;
+    json["near_plane"] = camera.nearPlane;
+    return json;
+}
+
+Json lightJson(const Light& light)
+{
+    Json json = {{"name", light.name}, {"type", typeName(light.type)}, {"direction", vectorJson(light.direction)}, {"intensity", vectorJson(light.intensity)}};
+    if (light.type != LightType::directional) json["position"] = vectorJson(light.position);
+    if (light.type == LightType::spot) {
+        json["inner_cone_angle_degrees"] = light.innerConeAngle * kDegrees;
+        json["outer_cone_angle_degrees"] = light.outerConeAngle * kDegrees;
+    }
+    if (light.range < kInfinity) json["range"] = light.range;
+    return json;
+}
+
+Json sceneJson(const Scene& scene, const std::string& sha256)
+{
+    Json json = {{"name", scene.name},
+                 {"sha256", sha256},
+                 {"meshes", scene.meshes.size()},
+                 {"triangles", scene.triangleCount()},
+                 {"materials", scene.materials.size()},
+                 {"textures", scene.textures.size()},
+                 {"textures_decoded", countDecoded(scene)},
+                 {"bounds", {{"min", vectorJson(scene.bounds.min)}, {"max", vectorJson(scene.bounds.max)}}},
+                 {"lights", Json::array()},
+                 {"cameras", Json::array()},
+                 {"notes", scene.notes}};
+    for (const Light& light : scene.lights) json["lights"].push_back(lightJson(light));
+    for (const Camera& camera : scene.cameras) json["cameras"].push_back(cameraJson(camera));
+    return json;
+}
+
+Json requirementsJson(const Requirements& needs)
+{
+    return {{"specular", needs.specular},         {"alpha_test", needs.alphaTest}, {"normal_maps", needs.normalMaps}, {"textures", needs.textures},
+            {"vertex_colors", needs.vertexColors}, {"left_out", needs.leftOut}};
+}
+
+void printScene(std::ostream& out, const Scene& scene)
+{
+    out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.triangleCount() << " triangles, " << scene.materials.size()
+        << " materials, " << scene.textures.size() << " textures (" << countDecoded(scene) << " used)\n"
+        << "bounds: " << brief(scene.bounds.min) << " .. " << brief(scene.bounds.max) << " m\n";
+    out << "lights: " << scene.lights.size() << ", one LRSM each\n";
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        out << "  " << i << " \"" << scene.lights[i].name << "\": " << describe(scene.lights[i]) << "\n";
+    out << "cameras: " << scene.cameras.size() << "\n";
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+        out << "  " << i << " \"" << scene.cameras[i].name << "\": " << describe(scene.cameras[i]) << "\n";
+    if (!scene.notes.empty()) out << "notes:\n";
+    for (const std::string& note : scene.notes) out << "  " << note << "\n";
+}
+
+void printRequirements(std::ostream& out, const Requirements& needs)
+{
+    out << "left out, without changing a bit of the picture:\n";
+    if (needs.leftOut.empty()) out << "  nothing\n";
+    for (const std::string& line : needs.leftOut) out << "  " << line << "\n";
+}
+
+}  // namespace lrsm

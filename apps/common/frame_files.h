@@ -1,0 +1,32 @@
+#pragma once
+
+#include "apps/common/memory.h"
+#include "conetrace/render.h"
+#include "core/base/output_folder.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+/// The files of a rendered frame: image.exr, image.png and a PNG a part, frame.json. docs/file-formats.md says what is in them.
+namespace lrsm {
+
+/// What made the frame.
+struct FrameRecord {
+    const Scene& scene;
+    const Camera& camera;
+    const Requirements& needs;
+    const Settings& settings;
+    std::string preset;
+    std::string sceneHash;
+    std::vector<MemoryRow> memory;
+    std::optional<float> exposureStops;  ///< of the PNGs; nothing: automatic
+    std::string visibility, radiance;    ///< of the diffuse gather: "voxel" or "exact", "lrsm" or "exact"
+};
+
+nlohmann::ordered_json frameJson(const Frame& frame, const FrameRecord& record);
+
+/// `json` goes into frame.json as it is; its settings and scene also into the EXR's metadata.
+void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& record, const nlohmann::ordered_json& json);
+
+}  // namespace lrsm

@@ -1,0 +1,177 @@
+#include "apps/common/commands.h"
+#include "apps/common/common_options.h"
+#include "apps/common/describe.h"
+#include "apps/common/interrupts.h"
+#include "apps/common/progress.h"
+#include "apps/reference/reference_files.h"
+#include "apps/reference/reference_run.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/parallel.h"
+#include "core/scene/load_scene.h"
+#include "core/scene/scene_hash.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace lrsm {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ReferenceArguments : CommonOptions {
+    std::string output, samples, model = "single", exposure = "auto";
+    std::uint64_t spp = 256, seed = 0;
+    int block = 16;
+    float specularAperture = 0.0f;
+    double checkpointSeconds = 60.0;
+    bool resume = false, bareLoop = false;
+};
+
+ReferenceSettings chosenReference(const ReferenceArguments& options)
+{
+    ReferenceSettings settings;
+    const IVec2 size = chosenSize(options);
+    settings.width = size.x;
+    settings.height = size.y;
+    if (options.model != "single" && options.model != "full") throw InputError("--model " + options.model, "must be single or full");
+    settings.transport = options.model == "full" ? Transport::full : Transport::single;
+    settings.blockBits = 0;
+    while ((1 << settings.blockBits) < options.block) ++settings.blockBits;
+    if ((1 << settings.blockBits) != options.block) throw InputError("--block " + std::to_string(options.block), "must be a power of two, 1 .. 4096");
+    settings.specularApertureDegrees = options.specularAperture;
+    settings.seed = options.seed;
+    validate(settings);
+    return settings;
+}
+
+SampleRange chosenRange(const ReferenceArguments& options)
+{
+    if (!options.samples.empty()) return parseSamples(options.samples);
+    if (options.spp < 1 || options.spp > std::uint64_t(1) << 32) throw InputError("--spp " + std::to_string(options.spp), "must be 1 .. 2^32");
+    return {0, options.spp};
+}
+
+/// Samples can be added to the end of what is there.
+void requireBeginning(const ReferenceState& state, const SampleRange& range, const std::string& place)
+{
+    std::vector<SampleRange> there = state.finished() ? state.sums.ranges : state.base.ranges;
+    if (!state.finished()) there.push_back(state.target);
+    if (there.front().begin != range.begin || there.back().end > range.end)
+        throw InputError(place, "holds samples " + describeRanges(there) + "; --resume can add to their end, but " + describeRanges({range}) + " was asked for");
+}
+
+/// The samples already in the folder, if there are any to go on from.
+std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, const Identity& identity, const SampleRange& range)
+{
+    const std::filesystem::path file = std::filesystem::path(options.output) / kSamplesFile;
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return {};
+    if (!options.resume) {
+        // Never throw hours away by a forgotten option; finished pictures may be replaced, as render does.
+        Checkpoint found;
+        try {
+            found = decodeCheckpoint(readFile(file.string()), file.string());
+        } catch (const InputError&) {
+            return {};
+        }
+        if (!found.state.finished()) throw InputError(options.output, "holds an unfinished render; --resume continues it, or delete " + file.string());
+        return {};
+    }
+    Checkpoint found = decodeCheckpoint(readFile(file.string()), file.string());
+    requireSameIdentity(identity, "this run", found.identity, file.string());
+    requireBeginning(found.state, range, options.output);
+    return found;
+}
+
+int runReference(const ReferenceArguments& options)
+{
+    if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
+    const ReferenceSettings settings = chosenReference(options);
+    const SampleRange range = chosenRange(options);
+    if (!(options.checkpointSeconds >= 0.0)) throw InputError("--checkpoint-seconds", "must be 0 or more");
+    std::optional<float> exposure;
+    if (options.exposure != "auto") {
+        float stops = 0.0f;
+        if (!CLI::detail::lexical_cast(options.exposure, stops) || !(std::abs(stops) <= 100.0f))
+            throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
+        exposure = stops;
+    }
+    { const OutputFolder writable(options.output); }  // fails now rather than after hours
+
+    const ThreadLimit threads(options.threads);
+    const Scene scene = loadChosenScene(options);
+    const Camera camera = chosenCamera(scene, options);
+    const std::string sceneHash = hashScene(scene);
+    Checkpoint checkpoint{identifyReference(settings, camera, sceneHash), sampleUnit(scene), {}};
+    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
+
+    Progress progress(options.quiet);
+    progress.show("building the BVH", 0.0);
+    const PathTracer tracer(scene, camera, settings);
+
+    const CatchInterrupts catching;
+    const TraceOptions trace{.folder = options.output, .checkpointSeconds = options.checkpointSeconds,
+                             .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); }, .stop = &catching.asked()};
+    ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(range);
+    const bool complete = traceRange(tracer, state, range, checkpoint, trace);
+    progress.clear();
+    if (!complete) {
+        std::cerr << "lrsm: interrupted; what is done is in " << options.output << " (--resume continues)" << std::endl;
+        return kInterruptedCode;
+    }
+    const double seconds = state.seconds;
+    checkpoint.state = std::move(state);
+    const RayCounts rays = checkpoint.state.rays;
+    Json json = referenceJson(scene, sceneHash, camera, tracer, checkpoint.state);
+    if (options.bareLoop) {
+        const BareLoop bare = tracer.timeBareLoop(std::max<std::size_t>(1, tracer.primary().covered.texels.size() / 65536));
+        const double rate = bare.seconds > 0.0 ? double(bare.rays) / bare.seconds : 0.0;
+        json["bare_loop"] = {{"rays", bare.rays}, {"seconds", bare.seconds}, {"million_per_second", rate * 1e-6},
+                             {"ratio", seconds > 0.0 && rate > 0.0 ? double(rays.total()) / seconds / rate : 0.0}};
+    }
+    OutputFolder folder(options.output);
+    writeReference(folder, checkpoint, seenLayers(tracer.primary()), json, exposure);
+    folder.commit();
+
+    if (options.json)
+        std::cout << jsonText(json);
+    else if (!options.quiet) {
+        std::cout << "  " << checkpoint.state.sums.sampleCount() << " samples a pixel, " << options.model << ", " << double(rays.total()) * 1e-6
+                  << " million rays in " << seconds << " s: " << json["rays"]["million_per_second"].get<double>() << " million a second\n";
+        if (options.bareLoop)
+            std::cout << "  bare loop over the same kind of rays: " << json["bare_loop"]["million_per_second"].get<double>() << " million a second; ratio "
+                      << json["bare_loop"]["ratio"].get<double>() << "\n";
+        if (checkpoint.state.invalidSamples > 0) std::cout << "  " << checkpoint.state.invalidSamples << " values were not finite and count as 0\n";
+        std::cout << folder.path().string() << ": image.exr, PNGs, frame.json, samples.bin\n";
+    }
+    return 0;
+}
+
+}  // namespace
+
+Command addReference(CLI::App& program)
+{
+    CLI::App* parser = program.add_subcommand("reference", "Path trace the same picture: the truth, with its variance");
+    const auto options = std::make_shared<ReferenceArguments>();
+    addSceneOptions(*parser, *options);
+    addPictureOptions(*parser, *options);
+    addRunOptions(*parser, *options);
+    parser->add_option("-o,--output", options->output, "folder for the results");
+    parser->add_option("--spp", options->spp, "samples a pixel: the range 0:N")->capture_default_str();
+    parser->add_option("--samples", options->samples, "A:B: only samples A .. B-1, to be merged with others (lrsm merge)");
+    parser->add_option("--model", options->model, "single: one diffuse bounce, what LRSM sets out to compute; full: every bounce, every BRDF")->capture_default_str();
+    parser->add_option("--specular-aperture", options->specularAperture, "degrees: adds the layer specular.cone, the mean radiance over this cone");
+    parser->add_option("--seed", options->seed, "another seed gives an independent picture")->capture_default_str();
+    parser->add_option("--block", options->block, "samples stratified against each other, a power of two; the variance is taken over blocks")->capture_default_str();
+    parser->add_flag("--resume", options->resume, "continue what the folder holds, to the same bits; with a larger --spp, add to it");
+    parser->add_option("--checkpoint-seconds", options->checkpointSeconds, "how often samples.bin is written; a kill loses no more")->capture_default_str();
+    parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
+    parser->add_flag("--bare-loop", options->bareLoop, "also time the same rays without shading");
+    return {parser, [options] { return runReference(*options); }};
+}
+
+}  // namespace lrsm

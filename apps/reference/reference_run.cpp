@@ -1,0 +1,116 @@
+#include "apps/reference/reference_run.h"
+
+#include "apps/common/describe.h"
+#include "apps/reference/reference_files.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace lrsm {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+const char* modelName(Transport transport) { return transport == Transport::full ? "full" : "single"; }
+
+/// Renders the samples of one state, writing checkpoints; false when interrupted.
+class Runner {
+  public:
+    Runner(const PathTracer& tracer, const TraceOptions& options, Checkpoint& checkpoint)
+        : tracer_(tracer), options_(options), checkpoint_(checkpoint), saved_(Clock::now())
+    {
+    }
+
+    bool finish(ReferenceState& state)
+    {
+        while (!tracer_.advance(state, Clock::now() + std::chrono::milliseconds(200), options_.stop)) {
+            show(state);
+            const bool stopped = options_.stop && *options_.stop, due = std::chrono::duration<double>(Clock::now() - saved_).count() >= options_.checkpointSeconds;
+            if ((due || stopped) && !options_.folder.empty()) save(state);
+            if (stopped) return false;
+        }
+        return true;
+    }
+
+  private:
+    void save(const ReferenceState& state)
+    {
+        checkpoint_.state = state;
+        std::filesystem::create_directories(options_.folder);
+        writeFileWhole((std::filesystem::path(options_.folder) / kSamplesFile).string(), encodeCheckpoint(checkpoint_));
+        saved_ = Clock::now();
+    }
+
+    void show(const ReferenceState& state)
+    {
+        if (!options_.show) return;
+        const double done = PathTracer::progress(state);
+        if (firstShown_ < 0.0) {
+            firstShown_ = done;
+            begun_ = Clock::now();
+        }
+        const double elapsed = std::chrono::duration<double>(Clock::now() - begun_).count(), gained = done - firstShown_;
+        const double left = gained > 0.0 ? elapsed * (1.0 - done) / gained : 0.0;
+        char text[64];
+        std::snprintf(text, sizeof text, "tracing, %d:%02d left", int(left) / 60, int(left) % 60);
+        options_.show(text, done);
+    }
+
+    const PathTracer& tracer_;
+    const TraceOptions& options_;
+    Checkpoint& checkpoint_;
+    Clock::time_point saved_, begun_;
+    double firstShown_ = -1.0;
+};
+
+Json speedJson(const RayCounts& rays, double seconds)
+{
+    return {{"eye", rays.eye}, {"bounce", rays.bounce}, {"light", rays.light}, {"total", rays.total()}, {"seconds", seconds},
+            {"million_per_second", seconds > 0.0 ? double(rays.total()) / seconds * 1e-6 : 0.0}};
+}
+
+}  // namespace
+
+Identity identifyReference(const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash)
+{
+    Json eye = cameraJson(camera);
+    eye.erase("name");
+    return {{"version", LRSM_VERSION},
+            {"scene_sha256", sceneHash},
+            {"camera", eye.dump()},
+            {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
+            {"model", modelName(settings.transport)},
+            {"seed", std::to_string(settings.seed)},
+            {"block", std::to_string(1 << settings.blockBits)},
+            {"specular_aperture_degrees", Json(settings.specularApertureDegrees).dump()}};
+}
+
+bool traceRange(const PathTracer& tracer, ReferenceState& state, const SampleRange& range, Checkpoint& checkpoint, const TraceOptions& options)
+{
+    Runner runner(tracer, options, checkpoint);
+    if (!state.finished() && !runner.finish(state)) return false;
+    if (state.sums.ranges.back().end >= range.end) return true;
+    tracer.extend(state, {state.sums.ranges.back().end, range.end});
+    return runner.finish(state);
+}
+
+Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer, const ReferenceState& state)
+{
+    const ReferenceSettings& settings = tracer.settings();
+    Json json = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"command", "reference"}, {"size", {settings.width, settings.height}}};
+    json["samples"] = state.sums.sampleCount();
+    json["sample_ranges"] = describeRanges(state.sums.ranges);
+    json["settings"] = {{"model", modelName(settings.transport)}, {"seed", settings.seed}, {"block", 1 << settings.blockBits},
+                        {"specular_aperture_degrees", settings.specularApertureDegrees}};
+    json["scene"] = sceneJson(scene, sceneHash);
+    json["camera"] = cameraJson(camera);
+    json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
+    json["rays"] = speedJson(state.rays, state.seconds);
+    json["not_finite_samples"] = state.invalidSamples;
+    return json;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,54 @@
+#include "apps/sweep/operating_points.h"
+
+#include "core/settings/settings_table.h"
+
+#include <string>
+
+namespace lrsm {
+
+namespace {
+
+/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps, and need a longer
+/// emitter delay: these go together.
+struct Point {
+    std::string_view name, assignments;
+};
+constexpr Point kPoints[] = {
+    {"1 cone, 256^3", "cone_count=1 voxel_resolution=256 rsm_resolution=256 start_voxels=2 step=0.75 voxel_level_bias=-2.5"},
+    {"2 cones, 256^3", "cone_count=2 voxel_resolution=256 rsm_resolution=256 start_voxels=2 step=0.75 voxel_level_bias=-2.5"},
+    {"3 cones, 256^3, RSM 256^2", "cone_count=3 voxel_resolution=256 rsm_resolution=256 start_voxels=2 voxel_level_bias=-2.5"},
+    {"fast", "cone_count=3 voxel_resolution=256 rsm_resolution=512 start_voxels=2 voxel_level_bias=-2.5"},
+    {"4 cones, 256^3", "cone_count=4 voxel_resolution=256 rsm_resolution=512 start_voxels=2 voxel_level_bias=-2.5"},
+    {"6 cones, 256^3, long steps", "voxel_resolution=256 rsm_resolution=512 start_voxels=2 step=0.75"},
+    {"6 cones, 256^3", "voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
+    {"balanced", ""},
+    {"9 cones, 512^3", "cone_count=9 depth_layers=3 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"12 cones, 512^3", "cone_count=12 depth_layers=3 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"fine", "cone_count=16 emitter_delay_taps=2.5 emitter_slant_cap=0.25"},
+    {"16 cones, 1024^3", "cone_count=16 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"24 cones, 1024^3", "cone_count=24 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+    {"accurate", "cone_count=32 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4 emitter_delay_taps=3.5 emitter_slant_cap=0.25"},
+};
+
+}  // namespace
+
+Settings settingsFromText(Settings base, std::string_view assignments)
+{
+    while (!assignments.empty()) {
+        const std::size_t end = assignments.find(' ');
+        const std::string_view word = assignments.substr(0, end);
+        if (!word.empty()) applySetting(base, std::string(word));
+        assignments.remove_prefix(end == std::string_view::npos ? assignments.size() : end + 1);
+    }
+    validate(base);
+    return base;
+}
+
+std::vector<NamedSettings> operatingPoints()
+{
+    std::vector<NamedSettings> points;
+    for (const Point& point : kPoints) points.push_back({std::string(point.name), settingsFromText(preset("balanced"), point.assignments)});
+    return points;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,189 @@
+#include "apps/sweep/sweep_tables.h"
+
+#include "core/settings/settings_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lrsm {
+namespace {
+
+std::string megabytes(std::size_t bytes)
+{
+    return bytes ? plainNumber(static_cast<double>(bytes) / 1e6) : "";
+}
+
+std::string changeText(double change)
+{
+    return (change > 0.0 ? "+" : "") + shortNumber(100.0 * change);
+}
+
+std::string_view nameOf(EffectKind kind)
+{
+    switch (kind) {
+        case EffectKind::winsBoth: return "wins both";
+        case EffectKind::buys: return "buys accuracy";
+        case EffectKind::saves: return "saves time";
+        case EffectKind::losesBoth: return "loses both";
+        case EffectKind::changesNothing: break;
+    }
+    return "changes nothing";
+}
+
+/// What is saved in memory alone is worth having, where a GPU is short of it.
+bool savesMemory(const Effect& effect)
+{
+    return effect.bytes < -0.01;
+}
+
+std::vector<std::string> effectRow(const Effect& e)
+{
+    const bool useless = e.kind == EffectKind::losesBoth && !savesMemory(e);
+    const std::string verdict = std::string(nameOf(e.kind)) + (e.kind == EffectKind::losesBoth && savesMemory(e) ? ", saves memory" : "");
+    return {(useless ? "!" : "") + e.label, e.base, verdict, e.percentPerMs > 0.0 ? shortNumber(e.percentPerMs) : "", changeText(e.error), changeText(e.worstError),
+            changeText(e.cost), (e.milliseconds > 0.0 ? "+" : "") + shortNumber(e.milliseconds), changeText(e.bytes),
+            std::to_string(e.changed) + " of " + std::to_string(e.cases)};
+}
+
+std::string errorText(const Looked& looked, const std::string& end)
+{
+    switch (looked.reach) {
+        case Reach::measured: return shortNumber(100.0 * looked.value);
+        case Reach::before: return "> " + shortNumber(100.0 * looked.value) + end;
+        case Reach::beyond: return "< " + shortNumber(100.0 * looked.value);
+        case Reach::belowFloor: break;
+    }
+    return "<= floor";
+}
+
+std::string costText(const Looked& looked)
+{
+    switch (looked.reach) {
+        case Reach::measured: return plainNumber(looked.value);
+        case Reach::before: return "< " + plainNumber(looked.value);
+        case Reach::beyond: return "> " + plainNumber(looked.value);
+        case Reach::belowFloor: break;
+    }
+    return "<= floor";
+}
+
+std::string ratioText(const std::optional<double>& ratio)
+{
+    return ratio ? shortNumber(*ratio) : "";
+}
+
+}  // namespace
+
+std::string percentText(double ratio)
+{
+    return shortNumber(100.0 * ratio) + " %";
+}
+
+std::string plainNumber(double value)
+{
+    return value >= 1000.0 && value < 1e7 ? std::to_string(std::llround(value)) : shortNumber(value);
+}
+
+std::string changedText(const Measurement& row)
+{
+    if (row.kind == RowKind::pathTracer) return std::to_string(row.samples) + (row.samples == 1 ? " path a pixel" : " paths a pixel");
+    std::string text;
+    for (const SettingDifference& d : differences(Settings{}, row.settings)) text += (text.empty() ? "" : ", ") + d.key + "=" + d.b;
+    return text.empty() ? "nothing" : text;
+}
+
+ReportTable casesTable(const std::vector<CaseRows>& cases)
+{
+    ReportTable table{"Scenes", {"scene", "size", "settings", "path tracer, spp", "truth, spp", "noise floor, %", "balanced: error, %", "frames", "ms", "MB"}, {}};
+    for (const CaseRows& one : cases) {
+        const Measurement& any = one.settings.empty() ? *one.pathTracer.front() : *one.settings.front();
+        std::vector<std::string> row = {one.name, std::to_string(any.width) + " x " + std::to_string(any.height), std::to_string(one.settings.size()),
+                                        one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples), std::to_string(any.truthSamples), shortNumber(100.0 * any.error.noise)};
+        if (const Measurement* balanced = findSettings(one, Settings{}))
+            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), plainNumber(balanced->cost), plainNumber(balanced->frame.median), megabytes(balanced->bytes)});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+ReportTable effectsTable(const std::vector<Effect>& effects)
+{
+    ReportTable table{"", {"value", "around", "verdict", "% of error a ms", "error, %", "worst scene, %", "time, %", "ms", "memory, %", "scenes changed"}, {}};
+    for (const Effect& e : effects)
+        if (e.kind != EffectKind::changesNothing) table.rows.push_back(effectRow(e));
+    return table;
+}
+
+ReportTable nothingTable(const std::vector<Effect>& effects)
+{
+    ReportTable table{"", {"value", "around", "scenes", "time, %", "memory, %"}, {}};
+    for (const Effect& e : effects)
+        if (e.kind == EffectKind::changesNothing) table.rows.push_back({e.label, e.base, std::to_string(e.cases), changeText(e.cost), changeText(e.bytes)});
+    return table;
+}
+
+ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<Effect>& effects)
+{
+    ReportTable table{"", {"value", "rows", "closest miss: dearer by, %", "changes a bit", "values on a front"}, {}};
+    const auto onFront = [](const TriedValue& t) { return t.timeFronts + t.memoryFronts > 0; };
+    for (const TriedValue& t : tried) {
+        if (onFront(t)) continue;
+        std::string others;
+        for (const TriedValue& other : tried)
+            if (other.key == t.key && onFront(other)) others += (others.empty() ? "" : ", ") + other.value;
+        const auto effect = std::find_if(effects.begin(), effects.end(), [&](const Effect& e) { return e.assignment == t.key + "=" + t.value; });
+        const std::string changes = effect == effects.end() ? "" : effect->kind == EffectKind::changesNothing ? "no" : "yes";
+        table.rows.push_back({t.key + "=" + t.value, std::to_string(t.rows), shortNumber(100.0 * t.closest), changes, others});
+    }
+    return table;
+}
+
+ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets)
+{
+    ReportTable table{"Path tracer over preset: geometric means over the scenes that have the ratio",
+                      {"preset", "error at equal time", "scenes", "time at equal error", "scenes"}, {}};
+    for (const EqualSummary& p : presets)
+        table.rows.push_back({p.preset, p.errorRatios ? shortNumber(p.errorRatio) : "", std::to_string(p.errorRatios) + " of " + std::to_string(p.cases),
+                              p.costRatios ? shortNumber(p.costRatio) : "", std::to_string(p.costRatios) + " of " + std::to_string(p.cases)});
+    return table;
+}
+
+ReportTable equalTable(const std::vector<EqualRow>& rows)
+{
+    ReportTable table{"", {"scene", "preset", "frames", "error, %", "equal time: its error, %", "ratio", "equal error: its frames", "ratio"}, {}};
+    for (const EqualRow& r : rows)
+        table.rows.push_back({r.name, r.preset, plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
+                              ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
+    return table;
+}
+
+ReportTable tracerTable(const std::vector<TracerRow>& rows)
+{
+    ReportTable table{"", {"scene", "spp", "frames", "error, %", "LRSM: frames", "error, %", "ratio of frames", "LRSM's settings against balanced"}, {}};
+    for (const TracerRow& r : rows) {
+        std::vector<std::string> row = {r.name, std::to_string(r.samples), plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
+        if (r.rival) row.insert(row.end(), {plainNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
+        else row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "", r.atFloor ? "not compared" : "none errs as little"});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+ReportTable frontTable(const std::string& title, const std::vector<const Measurement*>& front)
+{
+    ReportTable table{title, {"frames", "ms", "error, %", "FLIP", "energy", "MB", "settings against balanced"}, {}};
+    for (const Measurement* row : front)
+        table.rows.push_back({plainNumber(row->cost), plainNumber(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
+                              shortNumber(row->error.flip), shortNumber(row->error.energy), megabytes(row->bytes), changedText(*row)});
+    return table;
+}
+
+ReportTable combinedFrontTable(const CombinedCases& all)
+{
+    ReportTable table{"Front over all scenes: over balanced", {"time", "error", "memory", "settings against balanced"}, {}};
+    for (const CombinedRow* row : combinedFront(all))
+        table.rows.push_back({shortNumber(row->cost), shortNumber(row->error), shortNumber(row->bytes), changedText(*row->rows.front())});
+    return table;
+}
+
+}  // namespace lrsm

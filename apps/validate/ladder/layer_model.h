@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/settings/settings.h"
+#include "lrsm/rsm.h"
+
+#include <vector>
+
+/// Sec. 4.3 in double, from the settings and the RSM alone: the ladder's own reading of what lrsm/layers.h implements.
+namespace lrsm {
+
+/// One layer's texels, and its weight f(z_c). Linear depth of the light, [depthMin, depthMax).
+struct SelectedSlice {
+    double depthMin = 0.0, depthMax = 1.0, share = 1.0;
+    bool holdsEnd = false;  ///< the farthest slice is closed
+};
+
+class LayerModel {
+  public:
+    LayerModel(const Rsm& rsm, const LayerSettings& settings);
+
+    int depthSlices() const { return slices_; }
+    int normalSlices() const { return normalSlices_; }
+
+    /// The partition of rung Eq. 13, 14: equal slices without overlap.
+    int depthSlice(double depth) const;
+    int normalSlice(double nDotL) const;
+
+    /// The slices of rung Eq. 15, with their overlap: those that hold z_c, weighted by the decay; or those that [z_c - window, z_c + window] touches, weight 1.
+    std::vector<SelectedSlice> select(double zc, double window, LayerSelection selection) const;
+
+  private:
+    double low_ = 0.0, high_ = 1.0;  ///< nearest and farthest depth of all slices, without what Eq. 15 adds at the ends
+    double delta_ = 0.0;
+    int slices_ = 1, normalSlices_ = 1;
+    bool outermostDecay_ = false;
+};
+
+}  // namespace lrsm

@@ -1,0 +1,131 @@
+#include "apps/validate/split.h"
+
+#include "conetrace/lrsm/gather_setup.h"
+#include "core/base/parallel.h"
+#include "reference/integrator.h"
+#include "apps/validate/hit_radiance.h"
+#include "apps/validate/voxel_ray.h"
+
+namespace lrsm {
+namespace {
+
+constexpr float kVoxelDiagonal = 1.7320508f;
+
+struct GatherDirection {
+    Vec3 local{0.0f};     ///< tangent frame
+    float weight = 0.0f;  ///< all weights sum to 1
+};
+
+std::vector<GatherDirection> gatherDirections(int strata)
+{
+    ConeSettings dense;
+    dense.estimator = Estimator::slab;
+    dense.rotation = Rotation::strata;
+    dense.count = strata;
+    const ConeSet set = makeConeSet(dense);
+
+    std::vector<GatherDirection> directions;
+    for (int rotation = 0; rotation < kRotations; ++rotation)
+        for (const ConeRing& ring : set.rings)
+            for (const Vec3& local : set.rotation(rotation).subspan(std::size_t(ring.first), std::size_t(ring.count)))
+                directions.push_back({local, ring.weight / kRotations});
+    return directions;
+}
+
+/// Everything that a ray reads.
+struct SplitWorld {
+    const OpacityPyramid& opacity;
+    const std::vector<Lrsm>& lrsms;
+    const EmbreeScene& embree;
+    const ConeSettings& cones;
+    SplitSettings split;
+    std::vector<LightSampler> lights;
+    std::vector<GatherDirection> directions;
+    NormalCdf phi;
+};
+
+struct Arriving {
+    Vec3 radiance{0.0f};
+    bool hit = false;
+};
+
+Vec3 exactRadiance(Tracer& tracer, const Ray& ray, bool& hit)
+{
+    PathRandom unused({}, {});  // a single bounce draws nothing
+    return incomingRadiance(tracer, ray, Transport::single, unused, hit);
+}
+
+/// The radiance of the first surface along an exact ray.
+Arriving alongExactRay(const SplitWorld& world, Tracer& tracer, const Surface& surface, const Vec3& direction)
+{
+    Arriving arriving;
+    const Ray ray = rayFrom(tracer, surface, direction, RayKind::bounce);
+    if (world.split.radiance == Radiance::exact) {
+        arriving.radiance = exactRadiance(tracer, ray, arriving.hit);
+        return arriving;
+    }
+    const std::optional<RayHit> hit = tracer.closestHit(ray);
+    if (!hit) return arriving;
+
+    arriving.hit = true;
+    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.opacity.base.frame.voxelSize};
+    for (const Lrsm& lrsm : world.lrsms) arriving.radiance += lrsmRadiance(lrsm, probe, world.cones, world.phi);
+    return arriving;
+}
+
+/// The exact radiance of what lies in, or next to, the first occupied voxels along the ray.
+Arriving alongVoxelRay(const SplitWorld& world, Tracer& tracer, const Surface& surface, const Vec3& direction)
+{
+    const VoxelFrame& frame = world.opacity.base.frame;
+    const Vec3 n = glm::abs(surface.geometricNormal);
+    const float offset = world.cones.normalOffsetVoxels * (n.x + n.y + n.z) * frame.voxelSize;
+    const Vec3 origin = surface.position + surface.geometricNormal * offset;
+    const std::optional<VoxelRun> run = firstOccupied(world.opacity, frame.voxelsFromWorld(origin), direction, world.cones.startVoxels);
+    if (!run) return {};
+
+    const float tNear = std::max(0.0f, run->enter - kVoxelDiagonal) * frame.voxelSize, tFar = (run->leave + kVoxelDiagonal) * frame.voxelSize;
+    bool surfaceInReach = false;
+    return {exactRadiance(tracer, {origin, direction, tNear, tFar, RayKind::bounce}, surfaceInReach), true};
+}
+
+PixelGather gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& surface)
+{
+    const Mat3 frame = frameFromNormal(surface.normal);
+    PixelGather sum;
+    for (const GatherDirection& sample : world.directions) {
+        const Vec3 direction = frame * sample.local;
+        Arriving arriving{Vec3(0.0f), true};  // below the horizon: the surface itself is in the way
+        if (glm::dot(surface.geometricNormal, direction) > 0.0f)
+            arriving = world.split.visibility == Visibility::exact ? alongExactRay(world, tracer, surface, direction)
+                                                                   : alongVoxelRay(world, tracer, surface, direction);
+        sum.irradiance += (kPi * sample.weight) * arriving.radiance;
+        sum.opacity += arriving.hit ? sample.weight : 0.0f;
+    }
+    return sum;
+}
+
+}  // namespace
+
+void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree,
+                 const ConeSettings& cones, const SplitSettings& split, Gathered& gathered)
+{
+    if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return;
+    SplitWorld world{opacity, lrsms, embree, cones, split, {}, gatherDirections(split.strata), NormalCdf(cones.gaussian, cones.gaussianTableSize)};
+    for (const Light& light : embree.scene().lights) world.lights.emplace_back(light);
+
+    parallelFor(std::size_t(gbuffer.height), 1, [&](std::size_t begin, std::size_t end) {
+        Tracer tracer(world.embree, world.lights);
+        for (std::size_t pixel = begin * std::size_t(gbuffer.width); pixel < end * std::size_t(gbuffer.width); ++pixel) {
+            if (!gbuffer.covered(pixel)) continue;
+            Surface surface;
+            surface.position = gbuffer.position.texels[pixel];
+            surface.geometricNormal = gbuffer.geometricNormal.texels[pixel];
+            surface.normal = gbuffer.normal.texels[pixel];
+            const PixelGather gathering = gatherPixel(world, tracer, surface);
+            gathered.irradiance.texels[pixel] = gathering.irradiance;
+            gathered.opacity.texels[pixel] = gathering.opacity;
+        }
+    });
+}
+
+}  // namespace lrsm

@@ -1,0 +1,147 @@
+#include "conetrace/frame/direct.h"
+
+#include "core/base/elementary.h"
+#include "core/base/parallel.h"
+#include "core/settings/settings_table.h"
+#include "core/scene/brdf.h"
+#include "core/scene/light.h"
+
+#include <cassert>
+
+namespace lrsm {
+
+namespace {
+
+// A conservatively voxelized plane reaches up to one voxel above itself, and the trilinear filter half a voxel further.
+constexpr float kNormalOffsetVoxels = 1.5f;
+constexpr float kStartVoxels = 1.0f;
+constexpr float kTransmittanceCutoff = 0.01f;
+
+/// Distance along the ray at which it leaves the cube [0, resolution] for good, in voxels; <= 0 when the cube lies behind.
+float exitDistance(const Vec3& origin, const Vec3& direction, float resolution)
+{
+    float exit = kInfinity;
+    for (int k = 0; k < 3; ++k) {
+        if (direction[k] > 0.0f) exit = std::min(exit, (resolution - origin[k]) / direction[k]);
+        if (direction[k] < 0.0f) exit = std::min(exit, -origin[k] / direction[k]);
+    }
+    return exit;
+}
+
+/// What is left of the transmittance after half a sphere diameter more of the cone. Area densities add up (surfaces rarely overlap as seen
+/// from the receiver: a wall of density 1 is just opaque); opacities of the isotropic pyramid multiply.
+float attenuate(float transmittance, const OpacityPyramid& opacity, const Vec3& centre, const Vec3& direction, float diameter)
+{
+    const Vec3 sample = sampleOpacity(opacity, centre, fastLog2(diameter), FilterFraction::exact);
+    if (opacity.axes == OpacityAxes::directional) return std::max(0.0f, transmittance - glm::dot(glm::abs(direction), sample) * 0.5f * diameter);
+    return transmittance * std::sqrt(1.0f - std::min(1.0f, sample.x));  // two such steps make the sphere's own opacity
+}
+
+Surface surfaceAt(const GBuffer& gbuffer, std::size_t i)
+{
+    Surface surface;
+    surface.position = gbuffer.position.texels[i];
+    surface.geometricNormal = gbuffer.geometricNormal.texels[i];
+    surface.normal = gbuffer.normal.texels[i];
+    surface.albedo = gbuffer.albedo.texels[i];
+    if (!gbuffer.roughness.empty()) {
+        surface.specularColor = gbuffer.specularColor.texels[i];
+        surface.roughness = gbuffer.roughness.texels[i];
+    }
+    return surface;
+}
+
+struct Shadowing {
+    const std::vector<Rsm>& rsms;
+    const OpacityPyramid* opacity;
+    const DirectSettings& settings;
+    float tanHalfAperture = 0.0f;
+
+    float visibility(std::size_t light, const Surface& surface, const LightSample& sample) const
+    {
+        switch (settings.shadows) {
+            case Shadows::hard:
+                return shadowFromRsm(rsms[light], surface.position, surface.geometricNormal, sample.toLight, settings.depthBiasTexels);
+            case Shadows::cone:
+                return shadowFromCone(*opacity, surface.position, surface.geometricNormal, sample.toLight, sample.distance, tanHalfAperture);
+            case Shadows::off: break;
+        }
+        return 1.0f;
+    }
+};
+
+Vec3 shade(const std::vector<LightSampler>& lights, const Surface& surface, const Vec3& toEye, bool specular, const Shadowing& shadowing)
+{
+    Vec3 radiance(0.0f);
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        const LightSample sample = lights[k](surface.position);
+        const float nDotL = glm::dot(surface.normal, sample.toLight);
+        if (sample.irradiance == Vec3(0.0f) || nDotL <= 0.0f || glm::dot(surface.geometricNormal, sample.toLight) <= 0.0f) continue;
+        const float visibility = shadowing.visibility(k, surface, sample);
+        if (visibility == 0.0f) continue;
+
+        Vec3 reflected = surface.albedo * (nDotL / kPi);
+        if (specular) reflected += evaluateSpecular(surface, sample.toLight, toEye);
+        radiance += sample.irradiance * reflected * visibility;
+    }
+    return radiance;
+}
+
+}  // namespace
+
+float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float depthBiasTexels)
+{
+    const LightProjection& q = rsm.projection;
+    const LightSpacePoint p = projectToLight(q, pWorld);
+    if (!p.valid || !(p.u >= 0.0f && p.u < 1.0f && p.v >= 0.0f && p.v < 1.0f)) return 1.0f;
+    const int last = q.resolution - 1;
+    const int x = std::min(last, static_cast<int>(p.u * float(q.resolution))), y = std::min(last, static_cast<int>(p.v * float(q.resolution)));
+    if (rsm.texels.at(x, y).coverage == 0.0f) return 1.0f;
+
+    const float cosine = std::max(1e-3f, glm::dot(nGeometric, toLight));
+    const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+    // Depth is stored in float32 over the range: a few of its roundings are no occluder.
+    const float bias = depthBiasTexels * p.texelSize * (std::min(slope, kMaxBiasSlope) + kFlatBias) / q.depthRange() + 0x1p-21f;
+    return rsm.depthLinear.at(x, y) + bias < p.depth ? 0.0f : 1.0f;
+}
+
+float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance,
+                     float tanHalfAperture)
+{
+    const VoxelFrame& frame = opacity.base.frame;
+    const Vec3 origin = frame.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
+    const float end = std::min(distance / frame.voxelSize, exitDistance(origin, toLight, float(frame.resolution)));
+
+    float transmittance = 1.0f;
+    for (float t = kStartVoxels; t < end && transmittance > kTransmittanceCutoff;) {
+        const float diameter = std::max(1.0f, 2.0f * tanHalfAperture * t);
+        transmittance = attenuate(transmittance, opacity, origin + toLight * t, toLight, diameter);
+        t += 0.5f * diameter;
+    }
+    return transmittance > kTransmittanceCutoff ? transmittance : 0.0f;
+}
+
+DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, const std::vector<Rsm>& rsms,
+                         const OpacityPyramid* opacity, const Requirements& needs, const DirectSettings& settings)
+{
+    assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
+    assert(settings.shadows != Shadows::cone || opacity);
+    validate(settings);
+    const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
+    const Shadowing shadowing{rsms, opacity, settings, static_cast<float>(tangent(halfAperture))};
+
+    const std::vector<LightSampler> lights(scene.lights.begin(), scene.lights.end());
+
+    DirectResult result{Image<Vec3>(gbuffer.width, gbuffer.height)};
+    parallelFor(result.radiance.texels.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!gbuffer.covered(i)) continue;
+            const Surface surface = surfaceAt(gbuffer, i);
+            const Vec3 toEye = directionToEye(camera, surface.position);
+            result.radiance.texels[i] = shade(lights, surface, toEye, needs.specular, shadowing);
+        }
+    });
+    return result;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,53 @@
+#include "conetrace/frame/irradiance_filter.h"
+
+#include "core/base/parallel.h"
+
+namespace lrsm {
+namespace {
+
+constexpr int kReach = 2;
+constexpr float kNormalCosine = 0.9f;
+constexpr float kPlaneSlope = 0.1f;
+
+bool sameSurface(const GBuffer& g, std::size_t a, std::size_t b)
+{
+    if (!g.covered(b) || glm::dot(g.normal.texels[a], g.normal.texels[b]) < kNormalCosine) return false;
+    const Vec3 between = g.position.texels[b] - g.position.texels[a];
+    const float limit = kPlaneSlope * kPlaneSlope * glm::dot(between, between);
+    const float fromA = glm::dot(between, g.geometricNormal.texels[a]), fromB = glm::dot(between, g.geometricNormal.texels[b]);
+    return fromA * fromA <= limit && fromB * fromB <= limit;
+}
+
+Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int x, int y)
+{
+    const std::size_t centre = irradiance.index(x, y);
+    Vec3 sum(0.0f);
+    float total = 0.0f;
+    for (int dy = -kReach; dy <= kReach; ++dy) {
+        for (int dx = -kReach; dx <= kReach; ++dx) {
+            const int nx = x + dx, ny = y + dy;
+            if (nx < 0 || ny < 0 || nx >= gbuffer.width || ny >= gbuffer.height) continue;
+            const std::size_t neighbour = irradiance.index(nx, ny);
+            if (neighbour != centre && !sameSurface(gbuffer, centre, neighbour)) continue;
+            const float weight = (std::abs(dx) == kReach ? 0.5f : 1.0f) * (std::abs(dy) == kReach ? 0.5f : 1.0f);
+            sum += weight * irradiance.texels[neighbour];
+            total += weight;
+        }
+    }
+    return sum / total;
+}
+
+}  // namespace
+
+Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer)
+{
+    Image<Vec3> filtered(irradiance.width, irradiance.height);
+    parallelFor(std::size_t(irradiance.height), 8, [&](std::size_t begin, std::size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+            for (int x = 0; x < irradiance.width; ++x)
+                if (gbuffer.covered(irradiance.index(x, y))) filtered.at(x, y) = filterPixel(irradiance, gbuffer, x, y);
+    });
+    return filtered;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,61 @@
+#include "conetrace/frame/schedule.h"
+
+#include "core/base/errors.h"
+#include "core/base/elementary.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace lrsm {
+namespace {
+
+MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
+{
+    MarchStep step;
+    step.middle = t;
+    step.diameter = std::max(settings.minDiameterVoxels, 2.0f * t * tanHalf);
+    const double level = std::max(0.0, log2Exact(double(step.diameter)) + double(settings.voxelLevelBias));
+    step.level = static_cast<float>(level);
+    step.tapWidth = static_cast<float>(exp2Exact(level));
+    return step;
+}
+
+/// A step that float32 cannot add to the distance would end the cone in silence.
+[[noreturn]] void refuseStep(const ConeSettings& settings, float t)
+{
+    std::ostringstream text;
+    text << "the step is lost in float32 at " << t << " voxels from the receiver; raise step or min_diameter_voxels";
+    std::ostringstream place;
+    place << "settings step=" << settings.step << ", min_diameter_voxels=" << settings.minDiameterVoxels;
+    throw InputError(place.str(), text.str());
+}
+
+}  // namespace
+
+MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float reachVoxels)
+{
+    MarchSchedule schedule;
+    schedule.tanHalf = tanHalf;
+    const bool slab = settings.estimator == Estimator::slab;
+
+    float t = settings.startVoxels;
+    if (slab && t > 0.0f) {
+        MarchStep first = stepAt(settings, tanHalf, 0.5f * t);
+        first.end = t;
+        first.readVoxels = false;
+        schedule.steps.push_back(first);
+    }
+    while (t < reachVoxels && static_cast<int>(schedule.steps.size()) < settings.maxSteps) {
+        // The diameter at the segment's start gives its length: a segment grows with the cone.
+        const float length = settings.step * std::max(settings.minDiameterVoxels, 2.0f * t * tanHalf);
+        MarchStep step = stepAt(settings, tanHalf, slab ? t + 0.5f * length : t);
+        step.begin = t;
+        step.end = t + length;
+        if (!(step.end > t)) refuseStep(settings, t);
+        schedule.steps.push_back(step);
+        t = step.end;
+    }
+    return schedule;
+}
+
+}  // namespace lrsm

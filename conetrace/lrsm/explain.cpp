@@ -1,0 +1,102 @@
+#include "conetrace/lrsm/gather.h"
+#include "conetrace/lrsm/gather_setup.h"
+
+#include <cstdio>
+#include <string>
+
+namespace lrsm {
+namespace {
+
+template <class... Values>
+std::string format(const char* pattern, Values... values)
+{
+    char line[512];
+    std::snprintf(line, sizeof line, pattern, values...);
+    return line;
+}
+
+/// Writes down everything that the march tells.
+struct TextRecorder {
+    static constexpr bool active = true;
+    std::string text;
+    int cones = 0;
+
+    void cone(const ConeRay& ray, float weight, float tanHalf)
+    {
+        text += format("\ncone %d  direction %.4f %.4f %.4f  weight %.5f  tan half-angle %.4f\n", cones++, double(ray.direction.x),
+                       double(ray.direction.y), double(ray.direction.z), double(weight), double(tanHalf));
+        text += "  step  distance  diameter  level   density     alpha       transmittance  position\n";
+        steps = 0;
+    }
+    void step(const StepRecord& r)
+    {
+        text += format("  %4d  %8.3f  %8.3f  %5.2f  %10.3e  %10.3e  %10.6f     %.4f %.4f %.4f\n", steps++, double(r.step->middle),
+                       double(r.step->diameter), double(r.step->level), double(r.density), double(r.alpha), double(r.transmittance),
+                       double(r.pWorld.x), double(r.pWorld.y), double(r.pWorld.z));
+    }
+    void layer(int light, const LayerTerms& t, float transmittance)
+    {
+        text += format("        light %d layer %d  R %.4g %.4g %.4g  A %.4f  N %.4f  mean %.4f  variance %.3e  V %.5f  f %.4f  T %.5f"
+                       "  -> %.4g %.4g %.4g\n",
+                       light, t.layer, double(t.radiance.x), double(t.radiance.y), double(t.radiance.z), double(t.alpha), double(t.normal),
+                       double(t.mean), double(t.variance), double(t.visibility), double(t.decay), double(transmittance), double(t.outgoing.x),
+                       double(t.outgoing.y), double(t.outgoing.z));
+    }
+    void result(const ConeResult& r)
+    {
+        text += format("  I = %.6g %.6g %.6g   opacity %.5f\n", double(r.radiance.x), double(r.radiance.y), double(r.radiance.z),
+                       double(r.opacity));
+    }
+
+  private:
+    int steps = 0;
+};
+
+template <Estimator estimator>
+std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, int x, int y)
+{
+    const std::size_t pixel = gbuffer.position.index(x, y);
+    const GenericSampler sampler{world.opacity, world.settings.filterFraction};
+    const Receiver receiver = receiverAt(gbuffer, world.opacity.base.frame, world.settings, x, y);
+    MarchScratch scratch;
+    scratch.opticalDepth.resize(plan.longestSchedule);
+    ConeCounts counts;
+    TextRecorder recorder;
+
+    const PixelGather diffuse = gatherDiffuse<estimator>(world, sampler, plan, receiver, scratch, counts, recorder);
+    std::string specular;
+    if (!plan.specularSchedules.empty() && gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) {
+        const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
+        const float roughness = gbuffer.roughness.texels[pixel];
+        const Vec3 radiance = gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, roughness, scratch, counts, recorder);
+        specular = format("specular cone (the last above): I = %.6g %.6g %.6g\n", double(radiance.x), double(radiance.y), double(radiance.z));
+    }
+
+    const Vec3 p = receiver.position, n = receiver.normal, albedo = gbuffer.albedo.texels[pixel];
+    return format("pixel %d,%d: object %u at %.5f %.5f %.5f, normal %.4f %.4f %.4f, albedo %.4f %.4f %.4f, rotation %d of %d\n", x, y,
+                  gbuffer.objectId.texels[pixel], double(p.x), double(p.y), double(p.z), double(n.x), double(n.y), double(n.z), double(albedo.x),
+                  double(albedo.y), double(albedo.z), receiver.rotation, kRotations) +
+           format("distances and diameters in voxels of %.6g m; N is the crossing rate g and V the segment's share w in the slab estimator\n",
+                  double(world.opacity.base.frame.voxelSize)) +
+           recorder.text +
+           format("\nirradiance (before the 4x4 filter) %.6g %.6g %.6g, opacity %.5f\n", double(diffuse.irradiance.x),
+                  double(diffuse.irradiance.y), double(diffuse.irradiance.z), double(diffuse.opacity)) +
+           specular +
+           format("%llu cones, %llu steps, %llu voxel taps, %llu layer samples\n", static_cast<unsigned long long>(counts.cones),
+                  static_cast<unsigned long long>(counts.steps), static_cast<unsigned long long>(counts.voxelTaps),
+                  static_cast<unsigned long long>(counts.lrsmSamples));
+}
+
+}  // namespace
+
+std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
+                         const Requirements& needs, const ConeSettings& settings, int x, int y)
+{
+    if (!gbuffer.covered(gbuffer.position.index(x, y))) return format("pixel %d,%d: nothing is drawn here\n", x, y);
+    const GatherPlan plan = planGather(opacity, needs, settings);
+    const ConeWorld world{opacity, lrsms, settings, plan.phi};
+    return settings.estimator == Estimator::slab ? explainWith<Estimator::slab>(gbuffer, camera, world, plan, x, y)
+                                                 : explainWith<Estimator::paper>(gbuffer, camera, world, plan, x, y);
+}
+
+}  // namespace lrsm

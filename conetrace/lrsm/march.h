@@ -1,0 +1,105 @@
+#pragma once
+
+#include "conetrace/frame/schedule.h"
+#include "core/settings/settings.h"
+#include "lrsm/footprint.h"
+#include "lrsm/sample.h"
+#include "voxel/opacity_pyramid.h"
+
+#include <vector>
+
+/// One cone through the voxels and the LRSMs: the seam behind which the estimators stand. Each estimator is one function template with the same
+/// signature, ConeResult march...(const ConeWorld&, const Sampler&, const ConeRay&, const MarchSchedule&, MarchScratch&, ConeCounts&, Recorder&);
+/// marchCone in gather_setup.h picks one. The sampler is the opacity pyramid's lookup: specialised in a frame, generic for --pixel.
+namespace lrsm {
+
+/// Everything that a cone reads.
+struct ConeWorld {
+    const OpacityPyramid& opacity;
+    const std::vector<Lrsm>& lrsms;  ///< one a light; their radiance adds
+    const ConeSettings& settings;
+    const NormalCdf& phi;
+};
+
+/// The lookup for any pyramid and setting; the specialised OpacitySampler gives the same bits faster.
+struct GenericSampler {
+    const OpacityPyramid& pyramid;
+    FilterFraction fraction;
+    Vec3 operator()(const Vec3& pVoxels, float level) const { return sampleOpacity(pyramid, pVoxels, level, fraction); }
+};
+
+/// Apex and axis. Distances along the cone are in base voxels.
+struct ConeRay {
+    Vec3 originWorld{0.0f};
+    Vec3 originVoxels{0.0f};
+    Vec3 direction{0.0f, 1.0f, 0.0f};  ///< unit
+    Vec3 receiverNormal{0.0f, 1.0f, 0.0f};  ///< geometric, unit
+};
+
+struct ConeResult {
+    Vec3 radiance{0.0f};   ///< I of Eq. 1
+    float opacity = 0.0f;  ///< 1 - transmittance at the cone's end
+};
+
+struct ConeCounts {
+    std::uint64_t cones = 0;
+    std::uint64_t steps = 0;
+    std::uint64_t voxelTaps = 0;    ///< quadrilinear
+    std::uint64_t lrsmSamples = 0;  ///< trilinear footprints, one a layer
+    ConeCounts& operator+=(const ConeCounts& other)
+    {
+        cones += other.cones;
+        steps += other.steps;
+        voxelTaps += other.voxelTaps;
+        lrsmSamples += other.lrsmSamples;
+        return *this;
+    }
+};
+
+/// Working memory of one thread's cones, sized once for the longest schedule.
+struct MarchScratch {
+    std::vector<float> opticalDepth;  ///< at each segment's end
+};
+
+/// What --pixel shows of one step.
+struct StepRecord {
+    const MarchStep* step = nullptr;
+    Vec3 pWorld{0.0f};
+    float density = 0.0f;        ///< as read from the voxels
+    float alpha = 0.0f;          ///< opacity of this step
+    float transmittance = 1.0f;  ///< in front of this step
+};
+
+/// The recorder of ordinary frames: everything compiles away.
+struct NoRecorder {
+    static constexpr bool active = false;
+    void step(const StepRecord&) {}
+    void layer(int /*light*/, const LayerTerms&, float /*transmittance*/) {}
+};
+
+/// A recorder may leave out `layer` (terms are then not collected), and may add `lookup(const ConeSample&)`: told once for each step at which the
+/// march asks the LRSMs for light, before it does.
+template <class Recorder>
+concept RecordsLayers = Recorder::active && requires(Recorder& recorder, const LayerTerms& terms) { recorder.layer(0, terms, 1.0f); };
+template <class Recorder>
+concept RecordsLookups = Recorder::active && requires(Recorder& recorder, const ConeSample& sample) { recorder.lookup(sample); };
+
+/// Distance, in base voxels, at which a ray leaves the grid's cube (0 if it never meets it).
+inline float gridExit(const Vec3& originVoxels, const Vec3& direction, int resolution)
+{
+    float exit = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0f) continue;
+        const float wall = direction[axis] > 0.0f ? static_cast<float>(resolution) : 0.0f;
+        exit = std::min(exit, (wall - originVoxels[axis]) / direction[axis]);
+    }
+    return std::max(exit, 0.0f);
+}
+
+/// Area density, per base voxel of length, that a cone along `direction` meets.
+inline float densityAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
+{
+    return pyramid.axes == OpacityAxes::directional ? glm::dot(glm::abs(direction), sample) : sample.x;
+}
+
+}  // namespace lrsm

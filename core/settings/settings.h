@@ -1,0 +1,128 @@
+#pragma once
+
+#include "core/base/formats.h"
+
+#include <cstdint>
+#include <string>
+
+/// Every choice of the program, as plain structs with defaults: one struct a stage, one line a field. The key of a field in
+/// --set, JSON and docs is its name in snake_case (mip_filter); settings_table.cpp lists them all with range, unit and meaning.
+/// The defaults below are the preset `balanced`.
+namespace lrsm {
+
+enum class Storage { gpu, float32 };  ///< Table 1's formats after every pass, or float32 throughout
+enum class FilterFraction { exact, fixed8 };  ///< sampler fractions in float, or rounded to 1/256 (what D3D11 guarantees); key "8bit"
+
+enum class Voxelization { conservative, thin, raster };
+enum class MipFilter { mean, coverage, max };
+enum class OpacityAxes { isotropic, directional };  ///< one opacity a voxel, or an area density along each axis
+
+struct VoxelSettings {
+    int resolution = 512;  ///< voxels along an edge, power of two, 1..2048
+    Voxelization mode = Voxelization::thin;
+    MipFilter mipFilter = MipFilter::mean;
+    OpacityAxes axes = OpacityAxes::directional;
+    Storage storage = Storage::gpu;
+    bool operator==(const VoxelSettings&) const = default;
+};
+
+struct RsmSettings {
+    int resolution = 1024;  ///< texels along an edge, power of two, 2..8192
+    Storage storage = Storage::gpu;
+    HalfRounding halfRounding = HalfRounding::d3d;
+    bool operator==(const RsmSettings&) const = default;
+};
+
+enum class LayerSelection {
+    centre,  ///< the paper: layers whose depth range holds z_c, weighted by Eq. 15
+    touched  ///< every layer that the cone sample touches, weight 1; needs overlap 0
+};
+
+struct LayerSettings {
+    int depthLayers = 2;    ///< a + 1, 1..16
+    int normalLayers = 2;   ///< b + 1, 1..8, equal slices of <n.l>
+    float overlap = 0.0f;   ///< delta of Eq. 15 as a fraction of a depth slice, [0, 0.5]
+    bool fitRanges = true;  ///< depth ranges fitted to the RSM's valid texels; false: equal slices of the light's whole range
+    bool outermostDecay = false;  ///< true: Eq. 15 literally, also at the nearest and farthest end; false: the outer ranges reach delta further
+    bool dropEmpty = true;  ///< layers without a lit texel are neither stored nor sampled (no bit of the picture changes)
+    Storage storage = Storage::gpu;
+    HalfRounding halfRounding = HalfRounding::d3d;
+    bool operator==(const LayerSettings&) const = default;
+};
+
+enum class Shadows { hard, cone, off };  ///< RSM depth comparison; shadow cone through the voxels; unshadowed
+
+struct DirectSettings {
+    Shadows shadows = Shadows::hard;
+    float depthBiasTexels = 0.75f;        ///< hard: slope-scaled bias in RSM texels, >= 0; half a texel's diagonal just covers a plane
+    float shadowConeApertureDegrees = 2.0f;  ///< cone: full aperture, (0, 90]
+    bool operator==(const DirectSettings&) const = default;
+};
+
+enum class Estimator { paper, slab };
+enum class OpacityModel { none, density };
+enum class Backface { cosine, step };
+enum class GaussianMethod { table, polynomial, exact };
+enum class Rotation { none, azimuth, strata };  ///< per-pixel over 4x4: none; azimuth of the whole cone set; azimuth and polar angle stratified
+enum class SpecularAperture { fixed, roughness };
+enum class TransmittanceModel { exponential, linear };
+
+struct ConeSettings {
+    Estimator estimator = Estimator::slab;
+    int count = 6;                      ///< diffuse cones, 1..256
+    float apertureScale = 0.5f;         ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
+    Rotation rotation = Rotation::strata;
+    bool filter = true;                 ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
+    int setsPerPixel = 1;               ///< cone sets of the 16 rotations averaged in each pixel, 1..16
+
+    // March.
+    float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
+    float startVoxels = 3.0f;           ///< first sample's distance along the cone, base voxels, >= 0
+    float normalOffsetVoxels = 1.0f;    ///< origin off the surface along the geometric normal, base voxels, >= 0
+    float minDiameterVoxels = 1.0f;     ///< smallest sphere diameter, base voxels, > 0
+    float push = 0.0f;                  ///< sphere centre moved along the receiver's normal, in sphere radii, >= 0
+    float transmittanceCutoff = 0.01f;  ///< stop below this transmittance, [0, 1)
+    int maxSteps = 1024;                ///< 1..100000
+
+    // Opacity.
+    OpacityModel opacity = OpacityModel::density;
+    float densityK = 2.0f;              ///< `paper`: optical depth of a one-voxel wall, > 0
+    TransmittanceModel transmittance = TransmittanceModel::linear;  ///< `slab`
+    bool subtractOwnPlane = false;      ///< `slab`: receiver's own plane taken out of the opacity
+    float voxelLevelBias = -2.0f;       ///< added to log2(diameter in voxels)
+    float emitterDelayTaps = 2.0f;      ///< `slab`: transmittance is taken this many tap widths before the emitter ...
+    float emitterDelayVoxels = 0.75f;   ///< ... plus this many base voxels,
+    float emitterSlantCap = 0.5f;       ///< over max(cosine at the emitter, this)
+
+    // LRSM.
+    LayerSelection layerSelection = LayerSelection::touched;
+    Backface backface = Backface::step;  ///< `paper`: N of Eq. 8 as it is, or 1 where N > 0
+    float vRadiusScale = 1.0f;          ///< `paper`: depth window of Eq. 12 is z_c +- this r_c, > 0
+    float rsmLevelBias = 0.0f;          ///< added to log2(diameter in LRSM texels)
+    float rsmMinLevel = 0.0f;           ///< clamp (Fig. 8's trade), >= 0
+    GaussianMethod gaussian = GaussianMethod::polynomial;
+    int gaussianTableSize = 1024;       ///< entries, 2..65536
+    FilterFraction filterFraction = FilterFraction::exact;
+
+    // Specular.
+    SpecularAperture specularAperture = SpecularAperture::roughness;
+    float specularApertureDegrees = 10.0f;  ///< full aperture when fixed, (0, 170]
+    bool operator==(const ConeSettings&) const = default;
+};
+
+struct ForceSettings {
+    bool everything = false;  ///< run every pass and branch that the scene analysis would leave out (tests that the analysis is safe)
+    bool operator==(const ForceSettings&) const = default;
+};
+
+struct Settings {
+    VoxelSettings voxel;
+    RsmSettings rsm;
+    LayerSettings layers;
+    DirectSettings direct;
+    ConeSettings cones;
+    ForceSettings force;
+    bool operator==(const Settings&) const = default;
+};
+
+}  // namespace lrsm

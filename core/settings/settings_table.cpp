@@ -1,0 +1,198 @@
+#include "core/settings/settings_table.h"
+
+#include "core/base/errors.h"
+#include "core/settings/settings_rows.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+namespace lrsm {
+
+namespace {
+
+/// Shortest text that reads back to the same float.
+std::string floatText(float value)
+{
+    char buffer[64];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+    return std::string(buffer, end);
+}
+
+template <class Number>
+bool parseWhole(const std::string& text, Number& value)
+{
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+/// Levenshtein distance: how many letters to change, add or drop.
+std::size_t editDistance(const std::string& a, const std::string& b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+            diagonal = above;
+        }
+    }
+    return row[b.size()];
+}
+
+[[noreturn]] void refuse(const SettingRow& row, const std::string& value)
+{
+    throw InputError("setting " + std::string(row.key) + "=" + value, "must be " + allowedText(row));
+}
+
+}  // namespace
+
+std::string allowedText(const SettingRow& row)
+{
+    switch (row.kind) {
+    case SettingKind::flag: return "true | false";
+    case SettingKind::choice: {
+        std::string text;
+        for (const std::string_view name : row.choices) text += (text.empty() ? "" : " | ") + std::string(name);
+        return text;
+    }
+    case SettingKind::whole:
+        return std::to_string(int(row.range.min)) + " .. " + std::to_string(int(row.range.max)) + (row.range.powerOfTwo ? ", power of two" : "");
+    case SettingKind::real: break;
+    }
+    return (row.range.openMin ? "(" : "[") + floatText(row.range.min) + ", " + floatText(row.range.max) +
+           (row.range.openMax ? ")" : "]");
+}
+
+std::string valueText(const SettingRow& row, const Settings& settings)
+{
+    const double value = row.get(settings);
+    switch (row.kind) {
+    case SettingKind::flag: return value != 0.0 ? "true" : "false";
+    case SettingKind::choice: {
+        const auto index = static_cast<std::size_t>(value);
+        return index < row.choices.size() ? std::string(row.choices[index]) : "(invalid)";
+    }
+    case SettingKind::whole: return std::to_string(static_cast<long long>(value));
+    case SettingKind::real: break;
+    }
+    return floatText(static_cast<float>(value));
+}
+
+bool inRange(const SettingRow& row, double value)
+{
+    // Every comparison with NaN is false, so NaN is refused by the first.
+    const SettingRange& range = row.range;
+    if (!(value >= double(range.min) && value <= double(range.max))) return false;
+    if ((range.openMin && value == double(range.min)) || (range.openMax && value == double(range.max))) return false;
+    return !range.powerOfTwo || std::has_single_bit(static_cast<unsigned>(value));
+}
+
+void setFromText(const SettingRow& row, Settings& settings, const std::string& text)
+{
+    switch (row.kind) {
+    case SettingKind::flag:
+        if (text != "true" && text != "false") refuse(row, text);
+        return row.set(settings, text == "true");
+    case SettingKind::choice: {
+        const auto found = std::find(row.choices.begin(), row.choices.end(), text);
+        if (found == row.choices.end()) refuse(row, text);
+        return row.set(settings, double(found - row.choices.begin()));
+    }
+    case SettingKind::whole: {
+        int value = 0;
+        if (!parseWhole(text, value) || !inRange(row, value)) refuse(row, text);
+        return row.set(settings, value);
+    }
+    case SettingKind::real: {
+        float value = 0.0f;
+        if (!parseWhole(text, value) || !inRange(row, double(value))) refuse(row, text);
+        return row.set(settings, double(value));
+    }
+    }
+}
+
+const SettingRow& findRow(const std::string& key, const std::string& place)
+{
+    for (const SettingRow& row : settingRows())
+        if (row.key == key) return row;
+
+    const SettingRow* nearest = nullptr;
+    std::size_t nearestDistance = std::max<std::size_t>(3, std::min<std::size_t>(key.size(), 64) / 2);
+    for (const SettingRow& row : settingRows()) {
+        if (key.size() > 64) break;  // no misspelling
+        // An abbreviation ("filter" for irradiance_filter) is as near as a misspelling.
+        const bool part = key.size() >= 4 && row.key.find(key) != std::string_view::npos;
+        const std::size_t distance = part ? 1 : editDistance(key, std::string(row.key));
+        if (distance < nearestDistance) nearest = &row, nearestDistance = distance;
+    }
+    throw InputError(place, "there is no setting \"" + key + "\"" +
+                                (nearest ? "; did you mean " + std::string(nearest->key) + "?" : "") +
+                                " (`lrsm settings` lists them)");
+}
+
+void applySetting(Settings& settings, const std::string& assignment)
+{
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw InputError("setting \"" + assignment + "\"", "must be written key=value");
+    const std::string key = assignment.substr(0, equals);
+    setFromText(findRow(key, "setting " + assignment), settings, assignment.substr(equals + 1));
+}
+
+namespace {
+
+/// `stage` empty: all of them.
+void checkRanges(const Settings& settings, std::string_view stage)
+{
+    for (const SettingRow& row : settingRows())
+        if (!row.shorthand && (stage.empty() || row.stage == stage) && !inRange(row, row.get(settings))) refuse(row, valueText(row, settings));
+}
+
+}  // namespace
+
+void validate(const VoxelSettings& settings) { checkRanges({.voxel = settings, .rsm = {}, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "voxel"); }
+void validate(const RsmSettings& settings) { checkRanges({.voxel = {}, .rsm = settings, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "rsm"); }
+void validate(const LayerSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = settings, .direct = {}, .cones = {}, .force = {}}, "layers"); }
+void validate(const DirectSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = settings, .cones = {}, .force = {}}, "direct"); }
+void validate(const ConeSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = {}, .cones = settings, .force = {}}, "cones"); }
+
+void validate(const Settings& settings)
+{
+    checkRanges(settings, "");
+
+    const LayerSettings& layers = settings.layers;
+    const ConeSettings& cones = settings.cones;
+    if (cones.layerSelection == LayerSelection::touched && layers.overlap != 0.0f)
+        throw InputError("settings layer_selection=touched, layer_overlap=" + floatText(layers.overlap),
+                         "every touched layer is summed, so overlapping layers would count light twice; set layer_overlap=0 or "
+                         "layer_selection=centre");
+    if (cones.estimator == Estimator::slab && cones.layerSelection != LayerSelection::touched)
+        throw InputError("settings estimator=slab, layer_selection=centre",
+                         "the slab estimator sums a partition of the layers; set layer_selection=touched and layer_overlap=0, or "
+                         "estimator=paper");
+}
+
+std::vector<SettingInfo> describeSettings()
+{
+    const Settings balanced = preset("balanced");
+    std::vector<SettingInfo> infos;
+    for (const SettingRow& row : settingRows())
+        infos.push_back({std::string(row.key), std::string(row.stage), allowedText(row), std::string(row.unit), std::string(row.meaning),
+                         std::string(row.source), valueText(row, balanced), row.shorthand});
+    return infos;
+}
+
+std::vector<SettingDifference> differences(const Settings& a, const Settings& b)
+{
+    std::vector<SettingDifference> found;
+    for (const SettingRow& row : settingRows())
+        if (!row.shorthand && row.get(a) != row.get(b)) found.push_back({std::string(row.key), valueText(row, a), valueText(row, b)});
+    return found;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "apps/capture/record.h"
+#include "core/scene/builtin_scenes.h"
+
+#include <string>
+
+namespace lrsm::test {
+
+/// A frame small enough for a test, with everything in it.
+inline Settings smallSettings()
+{
+    Settings s;
+    s.voxel.resolution = 32;
+    s.rsm.resolution = 64;
+    return s;
+}
+
+struct Recording {
+    Scene scene;
+    Settings settings;
+    Requirements needs;
+    RecordOptions options;
+    Capture capture;
+};
+
+inline Recording record(const std::string& name, const Settings& settings, RecordOptions options = {})
+{
+    Recording r{*makeBuiltinScene(name), settings, {}, std::move(options), {}};
+    r.options.width = 40;
+    r.options.height = 30;
+    r.needs = analyseRequirements(r.scene, settings.force);
+    r.capture = recordCapture(r.scene, r.scene.cameras.at(0), r.needs, settings, r.options, "test");
+    return r;
+}
+
+/// The capture that tests of candidates share: it is only read.
+inline const Capture& sharedGolden()
+{
+    static const Capture capture = record("cornell-box", smallSettings()).capture;
+    return capture;
+}
+
+}  // namespace lrsm::test

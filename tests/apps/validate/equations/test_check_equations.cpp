@@ -1,0 +1,72 @@
+#include "core/base/errors.h"
+#include "apps/validate/equations/check_equations.h"
+
+#include "catch.h"
+
+#include <algorithm>
+
+using namespace lrsm;
+
+namespace {
+
+EquationOptions quick(double effort)
+{
+    EquationOptions options;
+    options.effort = effort;
+    options.measureSpeed = false;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("every equation keeps its stated bound where the search can reach", "[equations]")
+{
+    const EquationReport report = checkEquations(quick(0.1));
+    for (const EquationCheck& check : report.checks) {
+        CAPTURE(check.equation, check.function, check.boundName, check.bound, check.worst, check.worstInput);
+        CHECK(check.holds());
+        CHECK(!check.oracle.empty());
+        CHECK(!check.domain.empty());
+        CHECK(!check.boundName.empty());
+        CHECK(!check.errorKind.empty());
+        CHECK(check.meanError <= check.worst);
+    }
+    CHECK(report.holds());
+}
+
+TEST_CASE("the same figures come out on every run", "[equations]")
+{
+    EquationOptions options = quick(0.01);
+    options.equation = "12";
+    const EquationReport first = checkEquations(options), second = checkEquations(options);
+    REQUIRE(first.checks.size() == second.checks.size());
+    for (std::size_t i = 0; i < first.checks.size(); ++i) {
+        CHECK(first.checks[i].worst == second.checks[i].worst);
+        CHECK(first.checks[i].worstInput == second.checks[i].worstInput);
+        CHECK(first.checks[i].evaluations == second.checks[i].evaluations);
+        CHECK(first.checks[i].nanoseconds == 0.0);
+    }
+}
+
+TEST_CASE("one equation alone, and a name that is none", "[equations]")
+{
+    EquationOptions options = quick(0.01);
+    options.equation = "table1";
+    const EquationReport report = checkEquations(options);
+    CHECK(!report.checks.empty());
+    CHECK(std::all_of(report.checks.begin(), report.checks.end(), [](const EquationCheck& check) { return check.equation == "table1"; }));
+    options.equation = "16";
+    CHECK_THROWS_AS(checkEquations(options), InputError);
+}
+
+TEST_CASE("a check that compared nothing, or met NaN, does not hold", "[equations]")
+{
+    EquationCheck check;
+    check.bound = 1.0;
+    CHECK(!check.holds());
+    check.evaluations = 1;
+    CHECK(check.holds());
+    check.worst = std::numeric_limits<double>::quiet_NaN();
+    CHECK(!check.holds());
+    CHECK(!EquationReport{}.holds());
+}

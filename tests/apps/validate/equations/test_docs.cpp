@@ -1,0 +1,77 @@
+// docs/equations.md against the program: constants, bounds and domains cannot drift apart.
+#include "core/settings/settings.h"
+#include "apps/validate/equations/check_equations.h"
+
+#include "catch.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+using namespace lrsm;
+
+namespace {
+
+/// A table row's cells but the last, and that as a number.
+struct Row {
+    std::string cells;
+    double measured = 0.0;
+};
+
+std::vector<Row> rowsOf(const std::string& text)
+{
+    std::vector<Row> rows;
+    std::istringstream lines(text);
+    bool inTable = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("| equation | function | oracle | domain |", 0) == 0) {
+            inTable = true;
+            std::getline(lines, line);
+            continue;
+        }
+        if (line.empty() || line[0] != '|') inTable = false;
+        if (!inTable) continue;
+        const std::size_t end = line.rfind(" |"), last = line.rfind("| ", end - 1);
+        rows.push_back({line.substr(0, last), std::atof(line.c_str() + last + 2)});
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("docs/equations.md lists every check with its constant and bound as the program has them", "[equations][docs]")
+{
+    std::ifstream file(LRSM_SOURCE_DIR "/docs/equations.md");
+    std::stringstream page;
+    page << file.rdbuf();
+    EquationOptions options;
+    options.effort = 0.001;
+    options.measureSpeed = false;
+    const EquationReport report = checkEquations(options);
+    const std::vector<Row> written = rowsOf(page.str()), expected = rowsOf(equationsMarkdown(report));
+    REQUIRE(written.size() == expected.size());
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        CAPTURE(report.checks[i].function);
+        CHECK(written[i].cells == expected[i].cells);
+        // What the page says was measured keeps the bound, and the bound is no idle one.
+        CHECK(written[i].measured <= report.checks[i].bound * 1.05);
+        if (report.checks[i].boundName != "tableCdfMaxError(2)" && report.checks[i].bound > 0.0) CHECK(written[i].measured * 3.6 >= report.checks[i].bound);
+    }
+}
+
+TEST_CASE("defaults that are choices: a change of one is a change of every picture", "[equations][settings]")
+{
+    const Settings s;
+    CHECK(s.voxel.resolution == 512);
+    CHECK(s.rsm.resolution == 1024);
+    CHECK((s.layers.depthLayers == 2 && s.layers.normalLayers == 2 && s.layers.overlap == 0.0f));
+    CHECK(s.direct.depthBiasTexels == 0.75f);
+    CHECK(s.direct.shadowConeApertureDegrees == 2.0f);
+    const ConeSettings& c = s.cones;
+    CHECK((c.count == 6 && c.setsPerPixel == 1 && c.maxSteps == 1024 && c.gaussianTableSize == 1024));
+    CHECK((c.apertureScale == 0.5f && c.step == 0.5f && c.startVoxels == 3.0f && c.normalOffsetVoxels == 1.0f && c.minDiameterVoxels == 1.0f && c.push == 0.0f));
+    CHECK((c.transmittanceCutoff == 0.01f && c.densityK == 2.0f && c.voxelLevelBias == -2.0f));
+    CHECK((c.emitterDelayTaps == 2.0f && c.emitterDelayVoxels == 0.75f && c.emitterSlantCap == 0.5f));
+    CHECK((c.vRadiusScale == 1.0f && c.rsmLevelBias == 0.0f && c.rsmMinLevel == 0.0f && c.specularApertureDegrees == 10.0f));
+}

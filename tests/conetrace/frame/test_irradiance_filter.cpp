@@ -1,0 +1,72 @@
+#include "conetrace/frame/irradiance_filter.h"
+
+#include "conetrace/frame/cones.h"
+
+#include "catch.h"
+
+using namespace lrsm;
+
+namespace {
+
+/// A plane z = 0 seen head-on, one unit a pixel.
+GBuffer flatPlane(int width, int height)
+{
+    GBuffer g;
+    g.width = width;
+    g.height = height;
+    g.position = Image<Vec3>(width, height);
+    g.geometricNormal = g.normal = Image<Vec3>(width, height, Vec3(0, 0, 1));
+    g.objectId = Image<std::uint32_t>(width, height, 1u);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) g.position.at(x, y) = Vec3(x, y, 0);
+    return g;
+}
+
+}  // namespace
+
+TEST_CASE("filter: a constant field stays constant, whatever the geometry", "[conetrace][filter]")
+{
+    GBuffer g = flatPlane(12, 9);
+    g.normal.at(5, 5) = g.geometricNormal.at(5, 5) = Vec3(1, 0, 0);
+    g.objectId.at(3, 3) = 0;
+    const Image<Vec3> out = filterIrradiance(Image<Vec3>(12, 9, Vec3(0.3f, 7, 1e4f)), g);
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 12; ++x) {
+            if (g.objectId.at(x, y) == 0) {
+                CHECK(out.at(x, y) == Vec3(0));
+                continue;
+            }
+            for (int c = 0; c < 3; ++c) CHECK(out.at(x, y)[c] == Approx(Vec3(0.3f, 7, 1e4f)[c]).epsilon(1e-6));
+        }
+}
+
+TEST_CASE("filter: inside a plane each of the 16 rotations weighs exactly 1/16", "[conetrace][filter]")
+{
+    const GBuffer g = flatPlane(16, 16);
+    for (int rotation = 0; rotation < kRotations; ++rotation) {
+        Image<Vec3> only(16, 16);
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x)
+                if (rotationOfPixel(x, y, Rotation::azimuth) == rotation) only.at(x, y) = Vec3(16);
+        const Image<Vec3> out = filterIrradiance(only, g);
+        for (int y = 2; y < 14; ++y)
+            for (int x = 2; x < 14; ++x) REQUIRE(out.at(x, y).x == Approx(1));
+    }
+}
+
+TEST_CASE("filter: light does not cross an edge, a step in depth, or an empty pixel", "[conetrace][filter]")
+{
+    const int kind = GENERATE(0, 1, 2);
+    GBuffer g = flatPlane(12, 12);
+    Image<Vec3> in(12, 12);
+    for (int y = 0; y < 12; ++y)
+        for (int x = 6; x < 12; ++x) {
+            in.at(x, y) = Vec3(1);
+            if (kind == 0) g.normal.at(x, y) = g.geometricNormal.at(x, y) = Vec3(0, 1, 0);
+            if (kind == 1) g.position.at(x, y).z = 5;
+            if (kind == 2) g.objectId.at(x, y) = 0;
+        }
+    const Image<Vec3> out = filterIrradiance(in, g);
+    for (int y = 0; y < 12; ++y)
+        for (int x = 0; x < 6; ++x) CHECK(out.at(x, y) == Vec3(0));
+}
