@@ -14,7 +14,8 @@ namespace {
 int report(const std::string& message, int code)
 {
     std::string line = message;
-    std::replace_if(line.begin(), line.end(), [](char letter) { return letter == '\n' || letter == '\r'; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](char letter) { return letter == '\n' || letter == '\r'; }, ' ');
     std::cerr << "lrsm: " << line << std::endl;
     return code;
 }
@@ -54,18 +55,9 @@ int main(int argc, char** argv)
     program.set_version_flag("--version", LRSM_VERSION);
     program.require_subcommand(1);
     program.footer("Exit codes: 0 done, 1 a check failed, 2 bad usage or input, 3 the machine failed us.");
-    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),
-                                                 lrsm::addRender(program),
-                                                 lrsm::addReference(program),
-                                                 lrsm::addMerge(program),
-                                                 lrsm::addCompare(program),
-                                                 lrsm::addValidate(program),
-                                                 lrsm::addCapture(program),
-                                                 lrsm::addCheck(program),
-                                                 lrsm::addBench(program),
-                                                 lrsm::addSettings(program),
-                                                 lrsm::addSweep(program),
-                                                 lrsm::addTune(program)};
+    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),    lrsm::addRender(program),   lrsm::addReference(program), lrsm::addMerge(program),
+                                                 lrsm::addCompare(program), lrsm::addValidate(program), lrsm::addCapture(program),   lrsm::addCheck(program),
+                                                 lrsm::addBench(program),   lrsm::addSettings(program), lrsm::addSweep(program),     lrsm::addTune(program)};
 
     try {
         if (argc > 1 && argv[1][0] != '-') refuseUnknownCommand(program, argv[1]);

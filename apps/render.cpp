@@ -4,11 +4,11 @@
 #include "apps/common/frame_files.h"
 #include "apps/common/memory.h"
 #include "apps/common/progress.h"
+#include "apps/validate/split.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
-#include "apps/validate/split.h"
 
 #include <cmath>
 #include <iomanip>
@@ -30,8 +30,7 @@ std::optional<float> chosenExposure(const std::string& text)
 {
     if (text == "auto") return {};
     float stops = 0.0f;
-    if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f))
-        throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
+    if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f)) throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
     return stops;
 }
 
@@ -53,9 +52,8 @@ void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, cons
     double all = 0.0;
     for (const PassReport& pass : frame.passes) all += pass.milliseconds;
     for (const PassReport& pass : frame.passes)
-        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::fixed << std::setprecision(1) << std::setw(9)
-                  << pass.milliseconds << " ms" << std::setw(7) << (all > 0.0 ? 100.0 * pass.milliseconds / all : 0.0) << " %" << std::setw(13)
-                  << megabytes(pass.bytes) << "\n";
+        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::fixed << std::setprecision(1) << std::setw(9) << pass.milliseconds
+                  << " ms" << std::setw(7) << (all > 0.0 ? 100.0 * pass.milliseconds / all : 0.0) << " %" << std::setw(13) << megabytes(pass.bytes) << "\n";
     std::cout << "  " << std::left << std::setw(12) << "frame" << std::right << std::setw(9) << all << " ms\n";
     for (const MemoryRow& row : memory)
         if (row.measured && *row.measured != row.predicted)
@@ -97,7 +95,16 @@ int runRender(const RenderArguments& options)
 
     std::vector<int> layersKept;
     for (const Frame::LightReport& light : frame.lights) layersKept.push_back(static_cast<int>(light.ranges.size()));
-    FrameRecord record{scene, camera, needs, settings, options.preset, hashScene(scene), predictMemory(settings, needs, layersKept, size.x, size.y), exposure, options.visibility, options.radiance};
+    FrameRecord record{scene,
+                       camera,
+                       needs,
+                       settings,
+                       options.preset,
+                       hashScene(scene),
+                       predictMemory(settings, needs, layersKept, size.x, size.y),
+                       exposure,
+                       options.visibility,
+                       options.radiance};
     addMeasured(record.memory, frame);
     const nlohmann::ordered_json json = frameJson(frame, record);
     writeFrame(*folder, frame, record, json);
@@ -123,8 +130,10 @@ Command addRender(CLI::App& program)
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the results; they appear whole or not at all");
     parser->add_option("--pixel", options->pixel, "x,y: print how this pixel came about, cone by cone, step by step");
-    parser->add_option("--visibility", options->visibility, "voxel, or exact: the diffuse gather by Embree rays, to see what the voxels cost")->capture_default_str();
-    parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")->capture_default_str();
+    parser->add_option("--visibility", options->visibility, "voxel, or exact: the diffuse gather by Embree rays, to see what the voxels cost")
+        ->capture_default_str();
+    parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")
+        ->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; a frame that needs more is refused before it starts");
     return {parser, [options] { return runRender(*options); }};

@@ -19,8 +19,8 @@ void listSettings()
     std::string stage;
     for (const SettingInfo& info : describeSettings()) {
         if (info.stage != stage) std::cout << (stage.empty() ? "" : "\n") << (stage = info.stage) << "\n";
-        std::cout << "  " << info.key << " = " << info.defaultValue << "   {" << info.allowed << "}" << (info.unit.empty() ? "" : " " + info.unit)
-                  << "\n      " << info.meaning << " [" << info.source << "]\n";
+        std::cout << "  " << info.key << " = " << info.defaultValue << "   {" << info.allowed << "}" << (info.unit.empty() ? "" : " " + info.unit) << "\n      "
+                  << info.meaning << " [" << info.source << "]\n";
     }
     std::cout << "\npresets\n";
     for (const PresetInfo& info : presetInfos()) std::cout << "  " << info.name << ": " << info.summary << "\n";

@@ -51,8 +51,7 @@ PassSize sizeOf(const BitGrid& grid)
 
 PassSize sizeOf(const OpacityPyramid& pyramid)
 {
-    const VoxelSettings settings{.resolution = pyramid.base.frame.resolution, .mipFilter = pyramid.mipFilter, .axes = pyramid.axes,
-                                 .storage = pyramid.storage};
+    const VoxelSettings settings{.resolution = pyramid.base.frame.resolution, .mipFilter = pyramid.mipFilter, .axes = pyramid.axes, .storage = pyramid.storage};
     return {pyramid.byteSize(), predictPyramidGpuBytes(settings)};
 }
 
@@ -152,9 +151,8 @@ std::uint64_t countNonFinite(const Lrsm& lrsm)
 
 std::uint64_t countNonFinite(const GBuffer& gbuffer)
 {
-    return countIn(gbuffer.position.texels) + countIn(gbuffer.geometricNormal.texels) + countIn(gbuffer.normal.texels) +
-           countIn(gbuffer.albedo.texels) + countIn(gbuffer.specularColor.texels) + countIn(gbuffer.roughness.texels) +
-           countIn(gbuffer.depthLinear.texels);
+    return countIn(gbuffer.position.texels) + countIn(gbuffer.geometricNormal.texels) + countIn(gbuffer.normal.texels) + countIn(gbuffer.albedo.texels) +
+           countIn(gbuffer.specularColor.texels) + countIn(gbuffer.roughness.texels) + countIn(gbuffer.depthLinear.texels);
 }
 
 std::uint64_t countNonFinite(const Gathered& gathered)

@@ -62,8 +62,8 @@ class PassLog {
         const double cpu = processorMilliseconds() - cpuBegin;
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
         const PassSize size = sizeOf(output);
-        reports.push_back({name, elapsed.count(), cpu, size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string(),
-                           countNonFinite(output)});
+        reports.push_back(
+            {name, elapsed.count(), cpu, size.bytes, size.gpuBytes, options_.hashPasses ? hashOf(output) : std::string(), countNonFinite(output)});
         return output;
     }
 

@@ -5,8 +5,8 @@
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/pass_log.h"
 #include "core/base/float_state.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/check_scene.h"
+#include "core/settings/settings_table.h"
 #include "voxel/voxelize.h"
 
 namespace lrsm {
@@ -29,8 +29,7 @@ constexpr int kPassesPerFrame = 8, kPassesPerLight = 2;
 
 }  // namespace
 
-Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
-                  const RenderOptions& options)
+Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const RenderOptions& options)
 {
     const FloatState state;
     checkScene(scene);
@@ -62,9 +61,8 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
     frame.gbuffer = log.run("gbuffer", [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
     frame.direct = log.run("direct", [&] { return traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance; });
     ConeRecord record;
-    Gathered gathered = log.run("cones", [&] {
-        return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones, observer.cones ? &record : nullptr);
-    });
+    Gathered gathered =
+        log.run("cones", [&] { return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones, observer.cones ? &record : nullptr); });
     if (observer.cones) observer.cones(gathered, record);
     if (options.replaceDiffuse)
         gathered = log.run("rays", [&] {
@@ -90,8 +88,8 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& 
     return frame;
 }
 
-std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
-                         const RenderOptions& options, int x, int y)
+std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const RenderOptions& options, int x,
+                         int y)
 {
     const FloatState state;
     checkScene(scene);

@@ -22,7 +22,7 @@ struct FilteredTexel {
 struct LrsmFootprint {
     std::uint32_t texel[8] = {};  ///< index within a layer
     float weight[8] = {};
-    int taps = 0;                 ///< 4 on a whole level, else 8
+    int taps = 0;  ///< 4 on a whole level, else 8
 };
 
 /// Bound on the error of one texel's weight with exact fractions (a map's edge is a power of two, so u n - 0.5 loses nothing that matters).

@@ -68,9 +68,9 @@ float tableCdfMaxError(int tableSize)
 float NormalCdf::maxError() const
 {
     switch (method_) {
-        case GaussianMethod::table: return tableCdfMaxError(static_cast<int>(table_.size()));
-        case GaussianMethod::polynomial: return kPolynomialCdfMaxError;
-        default: return kExactCdfMaxError;
+    case GaussianMethod::table: return tableCdfMaxError(static_cast<int>(table_.size()));
+    case GaussianMethod::polynomial: return kPolynomialCdfMaxError;
+    default: return kExactCdfMaxError;
     }
 }
 

@@ -61,9 +61,9 @@ class NormalCdf {
     {
         if (x != x) return x;
         switch (method_) {
-            case GaussianMethod::table: return lookUp(x);
-            case GaussianMethod::polynomial: return 0.5f + centredCdfPolynomial(splat4(x))[0];
-            default: return static_cast<float>(normalCdfExact(x));
+        case GaussianMethod::table: return lookUp(x);
+        case GaussianMethod::polynomial: return 0.5f + centredCdfPolynomial(splat4(x))[0];
+        default: return static_cast<float>(normalCdfExact(x));
         }
     }
     /// Stated bound on |error| of this instance, against exact arithmetic, for any float x; NaN gives NaN.

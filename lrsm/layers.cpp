@@ -62,9 +62,7 @@ std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings)
     // depth, if zMax of the one minus zMin of the other *is* delta: so cuts and delta / 2 are whole multiples of one ULP of the far end.
     const float grid = ulp(depths.y);
     const float halfDelta = grid * std::floor(0.5f * settings.overlap * slice / grid + 0.5f);
-    const auto cut = [&](int i) {
-        return grid * std::floor((depths.x + slice * static_cast<float>(i)) / grid + 0.5f);
-    };
+    const auto cut = [&](int i) { return grid * std::floor((depths.x + slice * static_cast<float>(i)) / grid + 0.5f); };
 
     std::vector<LayerRange> ranges;
     ranges.reserve(static_cast<std::size_t>(slices) * static_cast<std::size_t>(normalSlices));

@@ -9,9 +9,9 @@ namespace lrsm {
 
 /// Depth range (linear depth of the light, [0, 1] over the scene) and <n.l> range of one layer. Half-open, the last closed.
 struct LayerRange {
-    float depthMin = 0.0f;  ///< where the layer's stored texels begin: zMin_l of Eq. 15, overlap included
-    float depthMax = 1.0f;  ///< zMax_l
-    float delta = 0.0f;     ///< width of the overlap at either end, in linear depth
+    float depthMin = 0.0f;                        ///< where the layer's stored texels begin: zMin_l of Eq. 15, overlap included
+    float depthMax = 1.0f;                        ///< zMax_l
+    float delta = 0.0f;                           ///< width of the overlap at either end, in linear depth
     bool decayAtMin = false, decayAtMax = false;  ///< does Eq. 15 fall off at that end?
     float nDotLMin = 0.0f;
     float nDotLMax = 1.0f;
@@ -28,23 +28,20 @@ struct alignas(16) LrsmTexel {
 /// Layered reflective shadow map of one light: every layer's full mip chain.
 struct Lrsm {
     LightProjection projection;
-    int baseResolution = 1;              ///< half the RSM's
-    std::vector<LayerRange> ranges;      ///< of the layers kept
+    int baseResolution = 1;                ///< half the RSM's
+    std::vector<LayerRange> ranges;        ///< of the layers kept
     std::vector<std::size_t> levelOffset;  ///< first texel of each level within a layer
     std::size_t texelsPerLayer = 0;
-    std::vector<LrsmTexel> texels;       ///< layer-major
+    std::vector<LrsmTexel> texels;                   ///< layer-major
     std::vector<std::uint64_t> validTexelsPerLayer;  ///< RSM texels assigned to each layer kept
-    int layersAsked = 0;                 ///< before empty ones were dropped
-    std::uint64_t negativeVariances = 0; ///< mip texels whose z^2 - z*z came out below 0, counted before any floor
+    int layersAsked = 0;                             ///< before empty ones were dropped
+    std::uint64_t negativeVariances = 0;             ///< mip texels whose z^2 - z*z came out below 0, counted before any floor
     ConversionCounts conversions;
 
     int levels() const { return int(levelOffset.size()); }
     int layers() const { return int(ranges.size()); }
     int resolutionAt(int level) const { return baseResolution >> level; }
-    const LrsmTexel* level(int layer, int lod) const
-    {
-        return texels.data() + std::size_t(layer) * texelsPerLayer + levelOffset[std::size_t(lod)];
-    }
+    const LrsmTexel* level(int layer, int lod) const { return texels.data() + std::size_t(layer) * texelsPerLayer + levelOffset[std::size_t(lod)]; }
     std::size_t byteSize() const { return texels.size() * sizeof(LrsmTexel); }
     /// In Table 1's formats: 24 bytes a texel.
     std::size_t gpuBytes() const { return texels.size() * 24; }

@@ -41,8 +41,8 @@ void fitDirectional(LightProjection& projection, const Aabb& bounds)
     const double texel = extent / (projection.resolution - 1);
     const auto snapped = [texel](float a, float b) { return std::floor(0.5 * (double(a) + b) / texel + 0.5) * texel; };
     projection.halfWidth = static_cast<float>(0.5 * texel * projection.resolution);
-    projection.position = projection.right * static_cast<float>(snapped(low.x, high.x)) +
-                          projection.up * static_cast<float>(snapped(low.y, high.y)) + projection.forward * low.z;
+    projection.position =
+        projection.right * static_cast<float>(snapped(low.x, high.x)) + projection.up * static_cast<float>(snapped(low.y, high.y)) + projection.forward * low.z;
     projection.depthNear = 0.0f;
     projection.depthFar = high.z - low.z;
 }
@@ -84,15 +84,15 @@ LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, 
     projection.up = glm::cross(projection.right, light.direction);
     projection.resolution = std::max(resolution, 2);
     switch (light.type) {
-        case LightType::directional: fitDirectional(projection, bounds); break;
-        case LightType::spot:
-            projection.halfWidth = static_cast<float>(tangent(light.outerConeAngle));
-            fitPerspective(projection, bounds);
-            break;
-        case LightType::cubeFace:
-            projection.halfWidth = 1.0f;
-            fitPerspective(projection, bounds);
-            break;
+    case LightType::directional: fitDirectional(projection, bounds); break;
+    case LightType::spot:
+        projection.halfWidth = static_cast<float>(tangent(light.outerConeAngle));
+        fitPerspective(projection, bounds);
+        break;
+    case LightType::cubeFace:
+        projection.halfWidth = 1.0f;
+        fitPerspective(projection, bounds);
+        break;
     }
     widenEmptyRange(projection);
     return projection;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 
 namespace lrsm {
 
@@ -11,12 +11,12 @@ namespace lrsm {
 /// depthNear keeps precision for a far light.
 struct LightProjection {
     LightType type = LightType::directional;
-    Vec3 position{0.0f};              ///< world; directional: centre of the near side of the fitted box
+    Vec3 position{0.0f};                                                             ///< world; directional: centre of the near side of the fitted box
     Vec3 right{1.0f, 0.0f, 0.0f}, up{0.0f, 1.0f, 0.0f}, forward{0.0f, 0.0f, -1.0f};  ///< unit, world
-    float halfWidth = 1.0f;           ///< directional: metres from the axis to the map's edge; spot: tan of the half field of view
-    float depthNear = 0.0f;           ///< metres
+    float halfWidth = 1.0f;  ///< directional: metres from the axis to the map's edge; spot: tan of the half field of view
+    float depthNear = 0.0f;  ///< metres
     float depthFar = 1.0f;
-    int resolution = 1;               ///< of the RSM, texels
+    int resolution = 1;  ///< of the RSM, texels
 
     float depthRange() const { return depthFar - depthNear; }
 };
@@ -33,7 +33,7 @@ struct LightSpacePoint {
     bool valid = false;        ///< in front of the light (the map's borders are the sampler's matter)
 };
 /// Errors, for a light as near to its scene as the scene is wide: u, v and depth absolute, texelSize relative.
-inline constexpr float kProjectionMaxError = 5e-7f;             ///< spot, cube face
+inline constexpr float kProjectionMaxError = 5e-7f;  ///< spot, cube face
 inline constexpr float kDirectionalProjectionMaxError = 1e-7f;
 LightSpacePoint projectToLight(const LightProjection& projection, const Vec3& pWorld);
 

@@ -104,8 +104,8 @@ bool empty(const WideTexel& t)
 WideTexel box(const WideTexel (&t)[4])
 {
     const auto mean = [](Float4 a, Float4 b, Float4 c, Float4 d) { return 0.25f * ((a + b) + (c + d)); };
-    return {mean(t[0].radiance, t[1].radiance, t[2].radiance, t[3].radiance),
-            mean(t[0].normal, t[1].normal, t[2].normal, t[3].normal), mean(t[0].depth, t[1].depth, t[2].depth, t[3].depth)};
+    return {mean(t[0].radiance, t[1].radiance, t[2].radiance, t[3].radiance), mean(t[0].normal, t[1].normal, t[2].normal, t[3].normal),
+            mean(t[0].depth, t[1].depth, t[2].depth, t[3].depth)};
 }
 
 /// Builds levels of all layers kept, tile by tile.
@@ -139,8 +139,7 @@ class Prefilter {
                 const LrsmTexel* row = children + std::size_t(2 * y) * std::size_t(childResolution) + std::size_t(2 * x);
                 const LrsmTexel* const four[4] = {row, row + 1, row + childResolution, row + childResolution + 1};
                 WideTexel wide[4];
-                for (int i = 0; i < 4; ++i)
-                    wide[i] = {loadFloat4(four[i]->radiance), loadFloat4(four[i]->normal), loadFloat4(four[i]->depth)};
+                for (int i = 0; i < 4; ++i) wide[i] = {loadFloat4(four[i]->radiance), loadFloat4(four[i]->normal), loadFloat4(four[i]->depth)};
                 store(layer, lod, x, y, box(wide), tally);
             }
     }
@@ -155,9 +154,7 @@ class Prefilter {
             index[i] = rsm_.texels.index(2 * x + (i & 1), 2 * y + (i >> 1));
             in[i] = layersOf_(rsm_.texels.texels[index[i]], rsm_.depthLinear.texels[index[i]]);
         }
-        const auto holds = [&](int i, int layer) {
-            return layer >= in[i].first && layer <= in[i].last && (layer - in[i].first) % layersOf_.stride() == 0;
-        };
+        const auto holds = [&](int i, int layer) { return layer >= in[i].first && layer <= in[i].last && (layer - in[i].first) % layersOf_.stride() == 0; };
         for (int i = 0; i < 4; ++i)
             for (int layer = in[i].first; layer <= in[i].last; layer += layersOf_.stride()) {
                 bool done = false;
@@ -178,8 +175,8 @@ class Prefilter {
     {
         const RsmTexel& texel = rsm_.texels.texels[index];
         const float z = warpDepth(range, rsm_.depthLinear.texels[index]);
-        return {Float4{texel.radiance.x, texel.radiance.y, texel.radiance.z, 0.0f},
-                Float4{texel.normal.x, texel.normal.y, texel.normal.z, 1.0f}, Float4{z, z * z, 1.0f, 0.0f}};
+        return {Float4{texel.radiance.x, texel.radiance.y, texel.radiance.z, 0.0f}, Float4{texel.normal.x, texel.normal.y, texel.normal.z, 1.0f},
+                Float4{z, z * z, 1.0f, 0.0f}};
     }
 
     void store(int layer, int lod, int x, int y, const WideTexel& wide, Tally& tally) const
@@ -248,8 +245,8 @@ void fillLevels(const Prefilter& prefilter, Lrsm& lrsm)
     }
 }
 
-Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& all, const std::vector<bool>& keep,
-               const Classifier& layersOf, const std::vector<TexelCounts>& counts)
+Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& all, const std::vector<bool>& keep, const Classifier& layersOf,
+               const std::vector<TexelCounts>& counts)
 {
     Lrsm lrsm;
     lrsm.projection = rsm.projection;
@@ -263,7 +260,8 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<
         lrsm.validTexelsPerLayer.push_back(counts[i].valid);
     }
     lrsm.texelsPerLayer = layOutLevels(lrsm.baseResolution, lrsm.levelOffset);
-    requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map", "lower rsm_resolution or the number of layers");
+    requireMemory(lrsm.ranges.size() * lrsm.texelsPerLayer * sizeof(LrsmTexel), "layered reflective shadow map",
+                  "lower rsm_resolution or the number of layers");
     lrsm.texels.resize(lrsm.ranges.size() * lrsm.texelsPerLayer);
     fillLevels(Prefilter(rsm, settings, layersOf, keptIndex, lrsm), lrsm);
     return lrsm;

@@ -3,10 +3,10 @@
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/raster/draw_scene.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/light.h"
+#include "core/settings/settings_table.h"
 
 namespace lrsm {
 

@@ -12,8 +12,8 @@ struct LightSpaceSample {
 };
 
 /// One layer's part of Eq. 14, weighted by f. Stops at the first factor that is 0, as Algorithm 1 does.
-LayerTerms evaluateLayer(const Lrsm& lrsm, int layer, float f, const LightSpaceSample& at, const Vec3& toReceiver,
-                         const ConeSettings& settings, const NormalCdf& phi)
+LayerTerms evaluateLayer(const Lrsm& lrsm, int layer, float f, const LightSpaceSample& at, const Vec3& toReceiver, const ConeSettings& settings,
+                         const NormalCdf& phi)
 {
     LayerTerms terms;
     terms.layer = layer;
@@ -42,8 +42,7 @@ LayerTerms evaluateLayer(const Lrsm& lrsm, int layer, float f, const LightSpaceS
 
 }  // namespace
 
-Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& settings, const NormalCdf& phi,
-                std::vector<LayerTerms>* terms)
+Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& settings, const NormalCdf& phi, std::vector<LayerTerms>* terms)
 {
     const LightSpacePoint p = projectToLight(lrsm.projection, sample.centre);
     if (!p.valid || !(p.u >= 0.0f && p.u <= 1.0f && p.v >= 0.0f && p.v <= 1.0f)) return Vec3(0.0f);

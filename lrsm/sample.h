@@ -63,13 +63,13 @@ struct ConeSample {
 /// The terms of one layer's contribution, kept apart so that --pixel, validation and capture can show them.
 struct LayerTerms {
     int layer = 0;
-    float decay = 0.0f;       ///< f, Eq. 15 (1 for `touched`)
-    Vec3 radiance{0.0f};      ///< A R
-    float alpha = 0.0f;       ///< A, Eq. 14
-    float normal = 0.0f;      ///< N as weighted by `backface`
+    float decay = 0.0f;                  ///< f, Eq. 15 (1 for `touched`)
+    Vec3 radiance{0.0f};                 ///< A R
+    float alpha = 0.0f;                  ///< A, Eq. 14
+    float normal = 0.0f;                 ///< N as weighted by `backface`
     float mean = 0.0f, variance = 0.0f;  ///< warped
-    float visibility = 0.0f;  ///< V, Eq. 12
-    Vec3 outgoing{0.0f};      ///< f A R V N
+    float visibility = 0.0f;             ///< V, Eq. 12
+    Vec3 outgoing{0.0f};                 ///< f A R V N
 };
 
 /// Algorithm 1: outgoing radiance of one cone sample from one light's LRSM (Eq. 5-15).
@@ -77,7 +77,6 @@ struct LayerTerms {
 /// it is, <= kSampleLrsmMaxError times the map's largest radiance: a variance of 2.5e-5 is the difference of two floats near 1. Footprints that
 /// hold one value keep kSampleLrsmFlatMaxError.
 inline constexpr float kSampleLrsmMaxError = 3e-4f, kSampleLrsmFlatMaxError = 6e-6f;
-Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& settings, const NormalCdf& phi,
-                std::vector<LayerTerms>* terms = nullptr);
+Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& settings, const NormalCdf& phi, std::vector<LayerTerms>* terms = nullptr);
 
 }  // namespace lrsm

@@ -154,8 +154,7 @@ std::vector<std::byte> encodeCheckpoint(const Checkpoint& checkpoint)
 Checkpoint decodeCheckpoint(const std::vector<unsigned char>& bytes, const std::string& place)
 {
     const std::size_t magic = sizeof kMagic - 1;
-    if (bytes.size() < magic + kHashDigits || std::memcmp(bytes.data(), kMagic, magic) != 0)
-        throw InputError(place, "is no samples file of this version");
+    if (bytes.size() < magic + kHashDigits || std::memcmp(bytes.data(), kMagic, magic) != 0) throw InputError(place, "is no samples file of this version");
     const std::span<const unsigned char> body(bytes.data(), bytes.size() - kHashDigits);
     const std::string hash(reinterpret_cast<const char*>(body.data() + body.size()), kHashDigits);
     if (Sha256().add(std::as_bytes(body)).hex() != hash) throw InputError(place, "is cut short or damaged: its hash does not fit");

@@ -33,8 +33,8 @@ struct Ray {
 struct RayHit {
     SurfaceHit surface;
     float t = 0.0f;
-    bool front = true;          ///< the ray came from the triangle's front
-    Vec3 scaledNormal{0.0f};    ///< of the triangle, towards the ray's origin, not unit
+    bool front = true;        ///< the ray came from the triangle's front
+    Vec3 scaledNormal{0.0f};  ///< of the triangle, towards the ray's origin, not unit
 };
 
 /// The scene's triangles in Embree: version 3 or 4, `isa=avx2`, ROBUST (watertight), one BVH. Alpha-masked hits are passed through.

@@ -13,10 +13,13 @@ using DVec3 = glm::dvec3;
 constexpr double kPiD = 3.14159265358979323846;
 
 // Color spaces (4.1). XYZ of the sRGB primaries under D65; GLM's matrices are given column by column.
-const glm::dmat3 kXyzFromRgb(0.4123907992659595, 0.2126390058715104, 0.0193308187155918, 0.3575843393838780, 0.7151686787677559,
-                             0.1191947797946260, 0.1804807884018343, 0.0721923153607337, 0.9505321522496608);
+const glm::dmat3 kXyzFromRgb(0.4123907992659595, 0.2126390058715104, 0.0193308187155918, 0.3575843393838780, 0.7151686787677559, 0.1191947797946260,
+                             0.1804807884018343, 0.0721923153607337, 0.9505321522496608);
 
-DVec3 whiteXyz() { return kXyzFromRgb * DVec3(1.0); }
+DVec3 whiteXyz()
+{
+    return kXyzFromRgb * DVec3(1.0);
+}
 
 /// YCxCz: CIELAB without its cube roots, so that filtering is linear.
 DVec3 yCxCzFromRgb(const DVec3& rgb)
@@ -213,8 +216,8 @@ Image<float> flip(const Image<Vec3>& referenceIn, const Image<Vec3>& testIn, dou
 
     Image<float> errors(reference.width, reference.height);
     for (std::size_t i = 0; i < errors.texels.size(); ++i) {
-        const double feature = std::max(std::abs(inReference.edge.texels[i] - inTest.edge.texels[i]),
-                                        std::abs(inReference.point.texels[i] - inTest.point.texels[i]));
+        const double feature =
+            std::max(std::abs(inReference.edge.texels[i] - inTest.edge.texels[i]), std::abs(inReference.point.texels[i] - inTest.point.texels[i]));
         const double featureError = std::clamp(std::sqrt(feature / std::sqrt(2.0)), 0.0, 1.0);
         errors.texels[i] = float(std::pow(colorError(seenReference.texels[i], seenTest.texels[i], largest), 1.0 - featureError));
     }

@@ -26,8 +26,7 @@ struct FlipExposures {
 FlipExposures automaticFlipExposures(const Image<Vec3>& reference);
 
 /// Largest LDR error over the exposures after the ACES tone curve (Narkowicz's fit, as in the 2021 paper).
-Image<float> hdrFlip(const Image<Vec3>& reference, const Image<Vec3>& test, const FlipExposures& exposures,
-                     double pixelsPerDegree = kFlipPixelsPerDegree);
+Image<float> hdrFlip(const Image<Vec3>& reference, const Image<Vec3>& test, const FlipExposures& exposures, double pixelsPerDegree = kFlipPixelsPerDegree);
 
 /// How the errors of a picture are pooled. Weighted quantiles count each pixel by its error, so that a small, badly wrong region shows.
 struct FlipPool {

@@ -75,8 +75,8 @@ Continuation continuePath(const Surface& surface, const Vec3& toViewer, const Ph
     return {direction, reflected / density};
 }
 
-constexpr int kFirstRouletteBounce = 3;      // shorter paths carry most of the light: never end them by chance
-constexpr float kLargestSurvival = 0.95f;    // so that a white furnace ends, too
+constexpr int kFirstRouletteBounce = 3;    // shorter paths carry most of the light: never end them by chance
+constexpr float kLargestSurvival = 0.95f;  // so that a white furnace ends, too
 
 }  // namespace
 

@@ -94,8 +94,7 @@ std::vector<Region> splitRegions(int width, int height, int columns, int rows)
     return regions;
 }
 
-std::vector<RegionMetrics> measureRegions(const Image<Vec3>& reference, const Image<Vec3>& test, const std::vector<Region>& regions,
-                                          const PixelMask& valid)
+std::vector<RegionMetrics> measureRegions(const Image<Vec3>& reference, const Image<Vec3>& test, const std::vector<Region>& regions, const PixelMask& valid)
 {
     const double mean = measure(reference, test, valid).meanReference;
     std::vector<RegionMetrics> result;

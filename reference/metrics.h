@@ -14,15 +14,15 @@ namespace lrsm {
 using PixelMask = Image<std::uint8_t>;
 
 struct Metrics {
-    std::uint64_t pixels = 0;         ///< that the sums below are over
+    std::uint64_t pixels = 0;                                 ///< that the sums below are over
     std::uint64_t notFiniteTest = 0, notFiniteReference = 0;  ///< pixels with a NaN or infinity, left out of everything else
     double meanReference = 0.0, meanTest = 0.0;
-    double energyRatio = 1.0;         ///< sum t / sum r: 1 + signed mean error; 1 where both are black, infinite where only r is
+    double energyRatio = 1.0;  ///< sum t / sum r: 1 + signed mean error; 1 where both are black, infinite where only r is
     std::array<double, 3> channelRatio{1.0, 1.0, 1.0};
-    double rmse = 0.0;                ///< sqrt(mean (t - r)^2) / mean r
-    double mae = 0.0;                 ///< mean |t - r| / mean r
-    double relMse = 0.0;              ///< mean over pixels of |t - r|^2 / (|r|^2 + 3 (0.01 mean r)^2), without the worst 0.1 % of the pixels
-    double largest = 0.0;             ///< largest |t - r| / mean r
+    double rmse = 0.0;     ///< sqrt(mean (t - r)^2) / mean r
+    double mae = 0.0;      ///< mean |t - r| / mean r
+    double relMse = 0.0;   ///< mean over pixels of |t - r|^2 / (|r|^2 + 3 (0.01 mean r)^2), without the worst 0.1 % of the pixels
+    double largest = 0.0;  ///< largest |t - r| / mean r
 };
 /// Pictures of one size; the mask of that size or empty.
 Metrics measure(const Image<Vec3>& reference, const Image<Vec3>& test, const PixelMask& valid = {});

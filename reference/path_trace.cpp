@@ -1,7 +1,7 @@
 #include "reference/path_trace.h"
 
-#include "core/base/errors.h"
 #include "core/base/elementary.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "reference/directions.h"
 #include "reference/integrator.h"
@@ -27,10 +27,7 @@ struct PixelBlock {
     int blockBits;
     std::array<std::uint32_t, 2> key;
 
-    SobolBlock points(Purpose purpose) const
-    {
-        return {philox({pixel, std::uint32_t(block), std::uint32_t(block >> 32), purpose}, key), blockBits};
-    }
+    SobolBlock points(Purpose purpose) const { return {philox({pixel, std::uint32_t(block), std::uint32_t(block >> 32), purpose}, key), blockBits}; }
     PathRandom path(Purpose purpose, std::uint32_t index) const
     {
         // The low 24 bits of the last word count the path's vertices.
@@ -54,8 +51,14 @@ void store(Sample& sample, int channel, const Vec3& value)
 class PixelSampler {
   public:
     PixelSampler(const PixelBlock& block, const ReferenceSettings& settings, const Surface& surface, const Vec3& toEye, int channels)
-        : block_(block), transport_(settings.transport), surface_(surface), toEye_(toEye), channels_(channels),
-          diffuse_(block.points(kDiffuseDirection)), lobe_(block.points(kLobeDirection)), cone_(block.points(kConeDirection)),
+        : block_(block),
+          transport_(settings.transport),
+          surface_(surface),
+          toEye_(toEye),
+          channels_(channels),
+          diffuse_(block.points(kDiffuseDirection)),
+          lobe_(block.points(kLobeDirection)),
+          cone_(block.points(kConeDirection)),
           cosHalf_(float(sinCos(0.5 * double(settings.specularApertureDegrees) * 3.14159265358979323846 / 180.0).cos))
     {
     }
@@ -78,8 +81,8 @@ class PixelSampler {
         const Vec3 direction = lobeDirection(surface_, toEye_, lobe_.point(index));
         const Vec3 reflected = evaluateSpecular(surface_, direction, toEye_);
         if (reflected != Vec3(0.0f))
-            store(sample, kLobe, reflected / lobeDensity(surface_, toEye_, direction) *
-                                     gather(tracer, surface_, direction, transport_, block_.path(kLobePath, index), hit));
+            store(sample, kLobe,
+                  reflected / lobeDensity(surface_, toEye_, direction) * gather(tracer, surface_, direction, transport_, block_.path(kLobePath, index), hit));
         if (channels_ < kConeChannels) return;
         const Vec3 inCone = coneDirection(mirrored(toEye_, surface_.normal), cosHalf_, cone_.point(index));
         store(sample, kCone, gather(tracer, surface_, inCone, transport_, block_.path(kConePath, index), hit));
@@ -132,7 +135,8 @@ void validate(const ReferenceSettings& s)
     const auto require = [](bool ok, const std::string& what) {
         if (!ok) throw InputError("reference settings", what);
     };
-    require(s.width >= 1 && s.height >= 1 && s.width <= 65536 && s.height <= 65536, "size = " + std::to_string(s.width) + "x" + std::to_string(s.height) + " must be in 1..65536 each way");
+    require(s.width >= 1 && s.height >= 1 && s.width <= 65536 && s.height <= 65536,
+            "size = " + std::to_string(s.width) + "x" + std::to_string(s.height) + " must be in 1..65536 each way");
     require(s.blockBits >= 0 && s.blockBits <= 12, "block bits = " + std::to_string(s.blockBits) + " must be in 0..12");
     require(s.specularApertureDegrees >= 0.0f && s.specularApertureDegrees <= 170.0f,
             "specular_aperture_degrees = " + std::to_string(s.specularApertureDegrees) + " must be in [0, 170]");
@@ -151,8 +155,12 @@ double sampleUnit(const Scene& scene)
 }
 
 PathTracer::PathTracer(const Scene& scene, const Camera& camera, const ReferenceSettings& settings)
-    : scene_(scene), settings_((validate(settings), settings)), embree_(scene), lights_(scene.lights.begin(), scene.lights.end()),
-      specular_(anySpecular(scene)), unit_(sampleUnit(scene))
+    : scene_(scene),
+      settings_((validate(settings), settings)),
+      embree_(scene),
+      lights_(scene.lights.begin(), scene.lights.end()),
+      specular_(anySpecular(scene)),
+      unit_(sampleUnit(scene))
 {
     shootPrimary(camera);
 }
@@ -247,8 +255,10 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
                     const Sample sample = sampler.draw(tracer, index);
                     for (int c = 0; c < channelCount; ++c) {
                         const double value = double(sample[std::size_t(c)]) / (c == kOpacity ? 1.0 : unit_);
-                        if (std::isfinite(value)) sum[std::size_t(c)] += toFixed(value);
-                        else ++invalid;
+                        if (std::isfinite(value))
+                            sum[std::size_t(c)] += toFixed(value);
+                        else
+                            ++invalid;
                     }
                 }
                 for (int c = 0; c < channelCount; ++c) {

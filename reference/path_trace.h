@@ -25,7 +25,7 @@ enum class Transport {
 struct ReferenceSettings {
     Transport transport = Transport::single;
     int width = 1280, height = 720;
-    int blockBits = 4;                   ///< log2 of the samples stratified against each other, 0..12; the spread is taken over blocks
+    int blockBits = 4;                     ///< log2 of the samples stratified against each other, 0..12; the spread is taken over blocks
     float specularApertureDegrees = 0.0f;  ///< full aperture of the cone layer, (0, 170]; 0: the cone layer is left out
     std::uint64_t seed = 0;
     bool operator==(const ReferenceSettings&) const = default;
@@ -42,36 +42,36 @@ struct RayCounts {
 
 /// What the eye sees: one ray through each pixel's centre, no antialiasing, as in the G-buffer.
 struct PrimaryHits {
-    Image<Surface> surface;            ///< as far as `covered`
+    Image<Surface> surface;  ///< as far as `covered`
     Image<std::uint8_t> covered;
-    Image<Vec3> toEye;                 ///< unit
-    Image<float> depth;                ///< metres along the viewing axis; 0 where empty
-    Image<Vec3> direct;                ///< radiance towards the eye: every light, one shadow ray each, diffuse and specular
+    Image<Vec3> toEye;   ///< unit
+    Image<float> depth;  ///< metres along the viewing axis; 0 where empty
+    Image<Vec3> direct;  ///< radiance towards the eye: every light, one shadow ray each, diffuse and specular
 };
 
 /// What has been rendered so far. The progress of a chunk of pixels is how many of the target range's blocks it has seen.
 struct ReferenceState {
     SampleRange target;
-    SampleSums sums;                        ///< of the target range; `ranges` is filled in when finished
-    SampleSums base;                        ///< finished earlier, joined to `sums` when the target is finished; no ranges: none
+    SampleSums sums;  ///< of the target range; `ranges` is filled in when finished
+    SampleSums base;  ///< finished earlier, joined to `sums` when the target is finished; no ranges: none
     std::vector<std::uint32_t> chunkBlocks;
     RayCounts rays;
-    std::uint64_t invalidSamples = 0;       ///< NaN or infinite contributions, counted as 0
-    double seconds = 0.0;                   ///< spent tracing
+    std::uint64_t invalidSamples = 0;  ///< NaN or infinite contributions, counted as 0
+    double seconds = 0.0;              ///< spent tracing
     bool finished() const { return !sums.ranges.empty(); }
 };
 
 /// Means with the variance of each mean. Layer names as in the output of `lrsm render`.
 struct ReferenceFrame {
-    Image<Vec3> direct;             ///< W/(m^2 sr)
-    Image<Vec3> irradiance;         ///< indirect, before the receiver's albedo: integral of L <n.w> dw about the shading normal, W/m^2
-    Image<Vec3> indirectDiffuse;    ///< albedo * irradiance / pi
-    Image<Vec3> indirectSpecular;   ///< the material's own lobe: integral of L f_s <n.w> dw
-    Image<Vec3> specularCone;       ///< mean radiance over the cone's solid angle about the mirror direction; empty unless asked for
-    Image<Vec3> combined;           ///< direct + indirectDiffuse + indirectSpecular
-    Image<float> opacity;           ///< fraction of the diffuse rays that hit anything
+    Image<Vec3> direct;            ///< W/(m^2 sr)
+    Image<Vec3> irradiance;        ///< indirect, before the receiver's albedo: integral of L <n.w> dw about the shading normal, W/m^2
+    Image<Vec3> indirectDiffuse;   ///< albedo * irradiance / pi
+    Image<Vec3> indirectSpecular;  ///< the material's own lobe: integral of L f_s <n.w> dw
+    Image<Vec3> specularCone;      ///< mean radiance over the cone's solid angle about the mirror direction; empty unless asked for
+    Image<Vec3> combined;          ///< direct + indirectDiffuse + indirectSpecular
+    Image<float> opacity;          ///< fraction of the diffuse rays that hit anything
     Image<Vec3> irradianceVariance, indirectDiffuseVariance, indirectSpecularVariance, specularConeVariance, combinedVariance;
-    Image<float> opacityVariance;   ///< all variances: of the mean; empty images with fewer than two complete blocks
+    Image<float> opacityVariance;  ///< all variances: of the mean; empty images with fewer than two complete blocks
     std::uint64_t samples = 0;
 };
 

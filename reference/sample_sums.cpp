@@ -89,8 +89,8 @@ void mergeSums(SampleSums& sums, const SampleSums& other, const char* place)
     sums.completeBlocks += other.completeBlocks;
 
     for (const PartialBlock& block : other.partial) {
-        const auto here = std::lower_bound(sums.partial.begin(), sums.partial.end(), block.block,
-                                           [](const PartialBlock& p, std::uint64_t b) { return p.block < b; });
+        const auto here =
+            std::lower_bound(sums.partial.begin(), sums.partial.end(), block.block, [](const PartialBlock& p, std::uint64_t b) { return p.block < b; });
         if (here == sums.partial.end() || here->block != block.block) {
             sums.partial.insert(here, block);
             continue;

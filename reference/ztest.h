@@ -6,13 +6,13 @@
 namespace lrsm {
 
 struct ZTest {
-    std::uint64_t values = 0;       ///< pixels times channels with a usable variance
-    std::uint64_t certain = 0;      ///< values that differ although their variance is 0
-    double rms = 0.0;               ///< sqrt(mean z^2); 1 when noise alone explains the difference and the variances are right
-    double largest = 0.0;           ///< largest |z|
-    double beyond3 = 0.0;           ///< fraction of |z| > 3; 0.0027 for Gaussian noise
-    double noise = 0.0;             ///< sqrt(mean variance) / mean r: the truth's own RMSE / mean
-    double pValue = 1.0;            ///< of the largest |z| among so many (Sidak's correction), Gaussian tails
+    std::uint64_t values = 0;   ///< pixels times channels with a usable variance
+    std::uint64_t certain = 0;  ///< values that differ although their variance is 0
+    double rms = 0.0;           ///< sqrt(mean z^2); 1 when noise alone explains the difference and the variances are right
+    double largest = 0.0;       ///< largest |z|
+    double beyond3 = 0.0;       ///< fraction of |z| > 3; 0.0027 for Gaussian noise
+    double noise = 0.0;         ///< sqrt(mean variance) / mean r: the truth's own RMSE / mean
+    double pValue = 1.0;        ///< of the largest |z| among so many (Sidak's correction), Gaussian tails
 };
 
 /// z = (t - r) / sqrt(variance), per pixel and channel. `variance` is that of the difference: the reference's, plus the test's if it has one.

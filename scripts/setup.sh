@@ -8,7 +8,7 @@ packages="g++ cmake ninja-build ccache
   libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools libtbb-dev libssl-dev
   libcli11-dev nlohmann-json3-dev libjs-chart.js
   catch2 libbenchmark-dev librapidcheck-dev libboost-dev libmpfr-dev"
-if [ "${1:-}" = "--ci" ]; then packages="$packages clang libclang-rt-dev libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri
+if [ "${1:-}" = "--ci" ]; then packages="$packages clang clang-format libclang-rt-dev libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri
   python3-numpy python3-jsonschema"; fi
 
 if ! command -v dpkg-query >/dev/null; then

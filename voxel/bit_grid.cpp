@@ -17,8 +17,7 @@ VoxelFrame fitVoxelFrame(const Aabb& bounds, int resolution)
     const bool hasPlace = !bounds.empty();
     const Vec3 low = hasPlace ? bounds.min : Vec3(0.0f);
     const Vec3 high = hasPlace ? bounds.max : Vec3(0.0f);
-    if (!isFinite(low) || !isFinite(high))
-        throw InputError("voxel grid", "the scene's bounds are not finite; remove the infinite vertices");
+    if (!isFinite(low) || !isFinite(high)) throw InputError("voxel grid", "the scene's bounds are not finite; remove the infinite vertices");
 
     // In double: the extent of a finite box may overflow a float.
     double longest = 0.0;
@@ -34,8 +33,7 @@ VoxelFrame fitVoxelFrame(const Aabb& bounds, int resolution)
     const double halfEdge = 0.5 * double(frame.voxelSize) * resolution;
     for (int axis = 0; axis < 3; ++axis) {
         frame.origin[axis] = float(0.5 * (double(low[axis]) + double(high[axis])) - halfEdge);
-        if (!std::isfinite(frame.origin[axis]))
-            throw InputError("voxel grid", "the grid would reach beyond float32; scale the scene down");
+        if (!std::isfinite(frame.origin[axis])) throw InputError("voxel grid", "the grid would reach beyond float32; scale the scene down");
     }
     return frame;
 }

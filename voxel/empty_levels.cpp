@@ -13,10 +13,7 @@ struct CellGrid {
     int edge = 1;
     std::vector<std::uint8_t> cell;
     explicit CellGrid(int n) : edge(n), cell(std::size_t(n) * std::size_t(n) * std::size_t(n), 0) {}
-    std::size_t index(int x, int y, int z) const
-    {
-        return (std::size_t(z) * std::size_t(edge) + std::size_t(y)) * std::size_t(edge) + std::size_t(x);
-    }
+    std::size_t index(int x, int y, int z) const { return (std::size_t(z) * std::size_t(edge) + std::size_t(y)) * std::size_t(edge) + std::size_t(x); }
 };
 
 template <class Body>
@@ -77,8 +74,7 @@ struct Neighbours {
     Neighbours()
     {
         for (int reach = 1; reach <= 2; ++reach)
-            for (int k = 0; k < 27; ++k)
-                mask[std::size_t(reach - 1)][std::size_t(k)] = reachedBits(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1, reach);
+            for (int k = 0; k < 27; ++k) mask[std::size_t(reach - 1)][std::size_t(k)] = reachedBits(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1, reach);
     }
 };
 
@@ -123,8 +119,8 @@ std::vector<std::uint8_t> findEmptyLevels(const BitGrid& base)
             for (int x = 0; x < empty.edge; ++x) {
                 std::uint8_t& cell = empty.cell[empty.index(x, y, z)];
                 if (cell == 0)
-                    cell = std::max(std::uint8_t(c + 3), parent.cell[parent.index(x * parent.edge / empty.edge, y * parent.edge / empty.edge,
-                                                                                 z * parent.edge / empty.edge)]);
+                    cell = std::max(std::uint8_t(c + 3),
+                                    parent.cell[parent.index(x * parent.edge / empty.edge, y * parent.edge / empty.edge, z * parent.edge / empty.edge)]);
                 else
                     cell = finest ? fineEmptyLevels(base, neighbours, x, y, z) : std::uint8_t(0);
             }

@@ -78,8 +78,7 @@ FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const Vo
         }
     }
     for (int k = 2; k < polygon.count; ++k)
-        pieces.piece[std::size_t(pieces.count++)] =
-            snapped(polygon.corner[0], polygon.corner[std::size_t(k - 1)], polygon.corner[std::size_t(k)]);
+        pieces.piece[std::size_t(pieces.count++)] = snapped(polygon.corner[0], polygon.corner[std::size_t(k - 1)], polygon.corner[std::size_t(k)]);
     return pieces;
 }
 

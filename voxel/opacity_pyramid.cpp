@@ -67,8 +67,9 @@ OpacityPyramid buildPyramid(BitGrid base, const VoxelSettings& settings)
     Layout layout = layoutOf(pyramid.base.frame.resolution);
     pyramid.levelOffset = std::move(layout.levelOffset);
 
-    requireMemory(predictPyramidBytes({.resolution = pyramid.base.frame.resolution, .axes = settings.axes, .storage = settings.storage}) - pyramid.base.byteSize(),
-                  "opacity pyramid", "lower voxel_resolution");
+    requireMemory(
+        predictPyramidBytes({.resolution = pyramid.base.frame.resolution, .axes = settings.axes, .storage = settings.storage}) - pyramid.base.byteSize(),
+        "opacity pyramid", "lower voxel_resolution");
     const std::size_t values = layout.texels * std::size_t(pyramid.channels());
     try {
         if (settings.storage == Storage::gpu)

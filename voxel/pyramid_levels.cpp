@@ -125,14 +125,12 @@ void fillEightBricks(const Levels<Texel>& out, int x, int y, int z)
     const BitGrid& base = out.pyramid.base;
     std::uint64_t brick[8];
     std::uint64_t any = 0;
-    for (int k = 0; k < 8; ++k)
-        any |= brick[k] = base.bricks[base.brickIndex(8 * x + 4 * (k & 1), 8 * y + 4 * ((k >> 1) & 1), 8 * z + 4 * (k >> 2))];
+    for (int k = 0; k < 8; ++k) any |= brick[k] = base.bricks[base.brickIndex(8 * x + 4 * (k & 1), 8 * y + 4 * ((k >> 1) & 1), 8 * z + 4 * (k >> 2))];
     if (any == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
         const int along = 1 << axis, side = 1 << ((axis + 1) % 3), other = 1 << ((axis + 2) % 3);
         int columns = 0;
-        for (const int k : {0, side, other, side + other})
-            columns += std::popcount(orColumns(brick[k] | brick[k + along], axis));
+        for (const int k : {0, side, other, side + other}) columns += std::popcount(orColumns(brick[k] | brick[k + along], axis));
         store(out.at(3, x, y, z)[axis], columns, 6);
     }
 }
@@ -190,9 +188,9 @@ void fillFromBelow(OpacityPyramid& pyramid, Texel* texels, int level)
     const Levels<Texel> levels{pyramid, texels};
     const auto withFilter = [&]<int channels>() {
         switch (pyramid.mipFilter) {
-            case MipFilter::mean: return fillSlices<channels, MipFilter::mean>(levels, level);
-            case MipFilter::coverage: return fillSlices<channels, MipFilter::coverage>(levels, level);
-            case MipFilter::max: return fillSlices<channels, MipFilter::max>(levels, level);
+        case MipFilter::mean: return fillSlices<channels, MipFilter::mean>(levels, level);
+        case MipFilter::coverage: return fillSlices<channels, MipFilter::coverage>(levels, level);
+        case MipFilter::max: return fillSlices<channels, MipFilter::max>(levels, level);
         }
     };
     if (levels.channels == 3)

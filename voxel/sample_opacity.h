@@ -15,8 +15,11 @@ template <Storage storage, OpacityAxes axes, FilterFraction fraction>
 class OpacitySampler {
   public:
     explicit OpacitySampler(const OpacityPyramid& pyramid)
-        : bricks_(pyramid.base.bricks.data()), emptyLevels_(pyramid.emptyLevels.data()), levelOffset_(pyramid.levelOffset.data()),
-          resolution_(pyramid.base.frame.resolution), brickEdge_(std::size_t(BitGrid::bricksPerEdge(resolution_))),
+        : bricks_(pyramid.base.bricks.data()),
+          emptyLevels_(pyramid.emptyLevels.data()),
+          levelOffset_(pyramid.levelOffset.data()),
+          resolution_(pyramid.base.frame.resolution),
+          brickEdge_(std::size_t(BitGrid::bricksPerEdge(resolution_))),
           topLevel_(pyramid.levels() - 1)
     {
         if constexpr (storage == Storage::gpu)

@@ -16,17 +16,26 @@ using Long2 = std::int64_t __attribute__((vector_size(16)));
 using Short8 = std::int16_t __attribute__((vector_size(16)));
 using Byte16 = std::int8_t __attribute__((vector_size(16)));
 
-inline Float4 splat(float v) { return Float4{v, v, v, v}; }
+inline Float4 splat(float v)
+{
+    return Float4{v, v, v, v};
+}
 inline bool all(Int4 mask)
 {
     const auto halves = reinterpret_cast<Long2>(mask);
     return (halves[0] & halves[1]) == -1;
 }
-inline Float4 keep(Int4 mask, Float4 v) { return reinterpret_cast<Float4>(mask & reinterpret_cast<Int4>(v)); }
+inline Float4 keep(Int4 mask, Float4 v)
+{
+    return reinterpret_cast<Float4>(mask & reinterpret_cast<Int4>(v));
+}
 
 /// a + f (b - a), 0 <= f < 1. Exact at f = 0 and for a == b; monotone in f; and never outside [min(a, b), max(a, b)]: f is at most
 /// 1 - 2^-24, so the rounded product is at most the exact b - a, and rounding is monotone.
-inline Float4 lerp(Float4 a, Float4 b, Float4 f) { return a + f * (b - a); }
+inline Float4 lerp(Float4 a, Float4 b, Float4 f)
+{
+    return a + f * (b - a);
+}
 
 inline Int4 floorToInt(Float4 t)
 {
@@ -35,7 +44,10 @@ inline Int4 floorToInt(Float4 t)
 }
 
 /// 2^-exponent, 0 <= exponent < 127.
-inline float inversePower(int exponent) { return std::bit_cast<float>(std::uint32_t(127 - exponent) << 23); }
+inline float inversePower(int exponent)
+{
+    return std::bit_cast<float>(std::uint32_t(127 - exponent) << 23);
+}
 
 /// The lower texel of the 2x2x2 that a lookup blends, and the fractions toward the upper ones.
 struct Footprint {
@@ -51,8 +63,7 @@ inline Footprint footprint(Float4 pVoxels, float texelsPerVoxel, int n)
     const Float4 low = splat(-2.0f), high = splat(float(n + 1));
     t = t > low ? t : low;
     t = t < high ? t : high;
-    if constexpr (fraction == FilterFraction::fixed8)
-        t = __builtin_convertvector(floorToInt(t * splat(256.0f) + splat(0.5f)), Float4) * splat(1.0f / 256.0f);
+    if constexpr (fraction == FilterFraction::fixed8) t = __builtin_convertvector(floorToInt(t * splat(256.0f) + splat(0.5f)), Float4) * splat(1.0f / 256.0f);
     const Int4 cell = floorToInt(t);
     return {cell, t - __builtin_convertvector(cell, Float4)};
 }
@@ -79,8 +90,7 @@ inline Float4 blendCorners(const Float4 (&corner)[8], Float4 f)
 inline Float4 widen(std::uint32_t bytes)
 {
     const Byte16 packed = reinterpret_cast<Byte16>(Int4{std::int32_t(bytes), 0, 0, 0});
-    const Short8 words = reinterpret_cast<Short8>(
-        __builtin_shufflevector(packed, Byte16{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+    const Short8 words = reinterpret_cast<Short8>(__builtin_shufflevector(packed, Byte16{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
     const Int4 lanes = reinterpret_cast<Int4>(__builtin_shufflevector(words, Short8{}, 0, 8, 1, 9, 2, 10, 3, 11));
     return __builtin_convertvector(lanes, Float4);
 }
@@ -104,7 +114,10 @@ inline Float4 loadThree(const std::uint8_t* values)
 {
     return widen(std::uint32_t(values[0]) | std::uint32_t(values[1]) << 8 | std::uint32_t(values[2]) << 16);
 }
-inline Float4 loadThree(const float* values) { return Float4{values[0], values[1], values[2], 0.0f}; }
+inline Float4 loadThree(const float* values)
+{
+    return Float4{values[0], values[1], values[2], 0.0f};
+}
 
 /// Two neighbours along x in each of four rows, to lower and upper.
 inline void loadPairs(const std::uint8_t* const (&row)[4], Float4& lower, Float4& upper)

@@ -18,17 +18,32 @@ inline constexpr std::int64_t floorDiv(std::int64_t n, std::int64_t d)  // d > 0
     const std::int64_t q = n / d;
     return q - (n % d < 0);
 }
-inline constexpr std::int64_t floorHalf(std::int64_t n) { return n >> 1; }
-inline constexpr std::int64_t ceilHalf(std::int64_t n) { return -((-n) >> 1); }
-inline constexpr std::int64_t floorVoxel(std::int64_t n) { return n >> kVoxelFractionBits; }
-inline constexpr std::int64_t ceilVoxel(std::int64_t n) { return -((-n) >> kVoxelFractionBits); }
+inline constexpr std::int64_t floorHalf(std::int64_t n)
+{
+    return n >> 1;
+}
+inline constexpr std::int64_t ceilHalf(std::int64_t n)
+{
+    return -((-n) >> 1);
+}
+inline constexpr std::int64_t floorVoxel(std::int64_t n)
+{
+    return n >> kVoxelFractionBits;
+}
+inline constexpr std::int64_t ceilVoxel(std::int64_t n)
+{
+    return -((-n) >> kVoxelFractionBits);
+}
 
 /// Closed interval of cells; lo > hi is empty.
 struct Span {
     int lo = 0, hi = -1;
     bool empty() const { return lo > hi; }
 };
-inline Span intersect(Span a, Span b) { return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)}; }
+inline Span intersect(Span a, Span b)
+{
+    return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
+}
 
 /// Cells whose closed extent touches [low, high] (1/4096 voxel) along one axis, cut to the grid.
 inline Span touchedCells(std::int32_t low, std::int32_t high, int resolution)
@@ -96,8 +111,7 @@ class SpanWalk {
             p[k][0] = triangle.vertex[k][columnAxis];
             p[k][1] = triangle.vertex[k][rowAxis];
         }
-        const std::int64_t area =
-            (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+        const std::int64_t area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
         // Seen edge-on the triangle is a segment. Going round it passes the segment both ways, so both of its sides bound all the same.
         for (std::size_t k = 0; k < 3; ++k) add(edgeHalfPlane<mode>(p[k], p[(k + 1) % 3], area >= 0 ? 1 : -1), firstRow);
         row_ = firstRow;

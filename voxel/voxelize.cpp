@@ -3,8 +3,8 @@
 #include "core/base/errors.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/check_scene.h"
+#include "core/settings/settings_table.h"
 #include "voxel/voxelize_triangle.h"
 
 #include <new>
@@ -58,8 +58,7 @@ void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Cor
     for (const auto& big : bigOfChunk) {
         for (const TriangleSetup& setup : big) {
             const Span rows = setup.cells[setup.rowAxis];
-            for (int row = rows.lo; row <= rows.hi; row += kRowsPerTask)
-                tasks.push_back({&setup, {row, std::min(row + kRowsPerTask - 1, rows.hi)}});
+            for (int row = rows.lo; row <= rows.hi; row += kRowsPerTask) tasks.push_back({&setup, {row, std::min(row + kRowsPerTask - 1, rows.hi)}});
         }
     }
     parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -86,9 +85,7 @@ BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelFrame& frame, Voxelization mode)
 {
     BitGrid grid = emptyGrid(frame);
-    voxelizeInto(grid, corners.size() / 3, mode, [&](std::size_t i) {
-        return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-    });
+    voxelizeInto(grid, corners.size() / 3, mode, [&](std::size_t i) { return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; });
     return grid;
 }
 

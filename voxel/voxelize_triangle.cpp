@@ -9,10 +9,22 @@ namespace {
 
 __extension__ using Int128 = __int128;
 
-Int128 floorVoxel128(Int128 n) { return n >> kVoxelFractionBits; }
-Int128 ceilVoxel128(Int128 n) { return -((-n) >> kVoxelFractionBits); }
-Int128 floorHalf128(Int128 n) { return n >> 1; }
-Int128 ceilHalf128(Int128 n) { return -((-n) >> 1); }
+Int128 floorVoxel128(Int128 n)
+{
+    return n >> kVoxelFractionBits;
+}
+Int128 ceilVoxel128(Int128 n)
+{
+    return -((-n) >> kVoxelFractionBits);
+}
+Int128 floorHalf128(Int128 n)
+{
+    return n >> 1;
+}
+Int128 ceilHalf128(Int128 n)
+{
+    return -((-n) >> 1);
+}
 
 struct QuotientRemainder {
     std::int64_t quotient, remainder;
@@ -136,8 +148,8 @@ void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& grid)
     if (t.boxIsExact) {
         for (int j = rows.lo; j <= rows.hi; ++j)
             for (int i = columns.lo; i <= columns.hi; ++i)
-                setColumn(writer, std::size_t(j >> 2) * stride[v] + std::size_t(i >> 2) * stride[u], ((j & 3) << (2 * v)) + ((i & 3) << (2 * u)),
-                          w, stride[w], depths);
+                setColumn(writer, std::size_t(j >> 2) * stride[v] + std::size_t(i >> 2) * stride[u], ((j & 3) << (2 * v)) + ((i & 3) << (2 * u)), w, stride[w],
+                          depths);
         return;
     }
 
@@ -229,9 +241,9 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
 void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& grid)
 {
     switch (mode) {
-        case Voxelization::conservative: return voxelizeRowsAs<Voxelization::conservative>(setup, rows, grid);
-        case Voxelization::thin: return voxelizeRowsAs<Voxelization::thin>(setup, rows, grid);
-        case Voxelization::raster: return voxelizeRowsAs<Voxelization::raster>(setup, rows, grid);
+    case Voxelization::conservative: return voxelizeRowsAs<Voxelization::conservative>(setup, rows, grid);
+    case Voxelization::thin: return voxelizeRowsAs<Voxelization::thin>(setup, rows, grid);
+    case Voxelization::raster: return voxelizeRowsAs<Voxelization::raster>(setup, rows, grid);
     }
 }
 

@@ -9,11 +9,11 @@ namespace lrsm {
 /// How one triangle meets the grid. Columns run along the dominant axis of its normal, rows along `rowAxis`.
 struct TriangleSetup {
     FixedTriangle triangle;
-    std::array<std::int64_t, 3> normal{};      ///< in (1/4096 voxel)^2; turned so that the component along `depthAxis` is >= 0
+    std::array<std::int64_t, 3> normal{};  ///< in (1/4096 voxel)^2; turned so that the component along `depthAxis` is >= 0
     std::size_t columnAxis = 0, rowAxis = 1, depthAxis = 2;
-    std::array<Span, 3> cells;                 ///< touched along each axis, cut to the grid
-    bool empty = true;                         ///< touches no voxel
-    bool boxIsExact = false;                   ///< conservative: all of `cells` are touched, no test needed
+    std::array<Span, 3> cells;  ///< touched along each axis, cut to the grid
+    bool empty = true;          ///< touches no voxel
+    bool boxIsExact = false;    ///< conservative: all of `cells` are touched, no test needed
 
     std::size_t columnCount() const
     {

@@ -99,7 +99,9 @@ int runBench(const BenchArguments& options)
     const std::vector<std::string> names = options.axes.empty() ? scalingAxisNames() : options.axes;
     const ScalingBase base = chosenBase(options);
     refuseEarly(base, names);
-    { OutputFolder probe(options.output); }
+    {
+        OutputFolder probe(options.output);
+    }
     std::filesystem::create_directories(options.output);
     RowFile rows(options.output + "/bench.csv");
     const nlohmann::ordered_json machine = machineJson();
@@ -125,8 +127,10 @@ int runBench(const BenchArguments& options)
             return kInterruptedCode;
         }
     }
-    if (options.json) std::cout << jsonText(benchJson(measured, machine, options.repeat));
-    else if (!options.quiet) std::cout << "\n" << options.output << ": bench.csv, bench.json, bench.html\n";
+    if (options.json)
+        std::cout << jsonText(benchJson(measured, machine, options.repeat));
+    else if (!options.quiet)
+        std::cout << "\n" << options.output << ": bench.csv, bench.json, bench.html\n";
     return 0;
 }
 
@@ -141,16 +145,21 @@ Command addBench(CLI::App& program)
     std::string names;
     for (const std::string& name : scalingAxisNames()) names += (names.empty() ? "" : ", ") + name;
     parser->add_option("AXIS", options->axes, "what grows, in this order; all without: " + names);
-    parser->add_option("-o,--output", options->output, "folder for bench.csv (a line a frame, as they come), bench.json and bench.html (after each axis)")->required();
+    parser->add_option("-o,--output", options->output, "folder for bench.csv (a line a frame, as they come), bench.json and bench.html (after each axis)")
+        ->required();
     parser->add_option("--scene", options->scene, "a .gltf, .glb or view .json file, or a built-in scene (lrsm info --list)")->capture_default_str();
     parser->add_option("--camera", options->camera, "camera by name or index");
     parser->add_option("--size", options->size, "WxH of every axis, the largest of `pixels`; without: each axis its own");
     addSettingOptions(*parser, *options);
     addRunOptions(*parser, *options);
-    parser->add_option("--repeat", options->repeat, "frames a point, round robin over the axis; medians are shown")->check(CLI::Range(1, 1000))->capture_default_str();
+    parser->add_option("--repeat", options->repeat, "frames a point, round robin over the axis; medians are shown")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     parser->add_option("--cores", options->cores, "the most that axis `threads` takes; 0: all the machine has")->check(CLI::Range(0, 1024));
     parser->add_flag("--quick", options->quick, "tiny frames, three values an axis: to see that it works, not to measure");
-    parser->footer("Each axis lowers voxel and RSM resolution so that what grows can be seen; --set goes over that. Times are processor time of all threads (_cpu_ms) and wall time (_ms).");
+    parser->footer(
+        "Each axis lowers voxel and RSM resolution so that what grows can be seen; --set goes over that. Times are processor time of all threads (_cpu_ms) and "
+        "wall time (_ms).");
     return {parser, [options] { return runBench(*options); }};
 }
 

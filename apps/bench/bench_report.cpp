@@ -106,9 +106,13 @@ Json curveJson(const ScalingCurve& curve)
 {
     Json json = {{"series", curve.series}, {"median", curve.median}, {"min", curve.min}, {"spread", curve.spread}, {"power", nullptr}, {"offset", nullptr}};
     if (curve.power)
-        json["power"] = {{"coefficient", curve.power->coefficient}, {"exponent", curve.power->exponent}, {"standard_error", curve.power->standardError}, {"r2", curve.power->r2}};
+        json["power"] = {{"coefficient", curve.power->coefficient},
+                         {"exponent", curve.power->exponent},
+                         {"standard_error", curve.power->standardError},
+                         {"r2", curve.power->r2}};
     if (curve.offset)
-        json["offset"] = {{"constant", curve.offset->constant}, {"factor", curve.offset->factor}, {"exponent", curve.offset->exponent}, {"residual", curve.offset->residual}};
+        json["offset"] = {
+            {"constant", curve.offset->constant}, {"factor", curve.offset->factor}, {"exponent", curve.offset->exponent}, {"residual", curve.offset->residual}};
     return json;
 }
 
@@ -130,8 +134,12 @@ Json axisJson(const MeasuredAxis& measured)
 
 nlohmann::ordered_json machineJson()
 {
-    Json machine = {{"processor", valueOfCpuinfo("model name")}, {"family", valueOfCpuinfo("cpu family")}, {"model", valueOfCpuinfo("model")},
-                    {"cores", std::thread::hardware_concurrency()}, {"compiler", compilerName()}, {"version", LRSM_VERSION}};
+    Json machine = {{"processor", valueOfCpuinfo("model name")},
+                    {"family", valueOfCpuinfo("cpu family")},
+                    {"model", valueOfCpuinfo("model")},
+                    {"cores", std::thread::hardware_concurrency()},
+                    {"compiler", compilerName()},
+                    {"version", LRSM_VERSION}};
     double load[3] = {};
     machine["load"] = ::getloadavg(load, 3) == 3 ? Json{load[0], load[1], load[2]} : Json();
     return machine;
@@ -160,8 +168,8 @@ ReportTable exponentTable(const MeasuredAxis& measured)
     for (const ScalingExpectation& expected : measured.axis.expected) {
         const ScalingCurve* curve = measured.result.find(expected.series);
         if (!curve || !curve->power) continue;
-        table.rows.push_back({expected.series, fixedNumber(curve->power->exponent, 3), fixedNumber(curve->power->standardError, 3), fixedNumber(curve->power->r2, 3),
-                              offsetText(*curve), expectedText(expected), expected.why});
+        table.rows.push_back({expected.series, fixedNumber(curve->power->exponent, 3), fixedNumber(curve->power->standardError, 3),
+                              fixedNumber(curve->power->r2, 3), offsetText(*curve), expectedText(expected), expected.why});
     }
     return table;
 }
@@ -208,8 +216,8 @@ std::string benchPage(const std::vector<MeasuredAxis>& axes, const nlohmann::ord
 {
     HtmlPage page{"lrsm bench: how cost grows", "", "", chartStyle(), chartScript()};
     page.summary = machine["processor"].get<std::string>() + ", " + machine["compiler"].get<std::string>() + ", load average " +
-                   (machine["load"].is_array() ? fixedNumber(machine["load"][0].get<double>(), 1) : "unknown") + " before; medians of " + std::to_string(repeat) +
-                   ". _cpu_ms is processor time of all threads, dashed lines are least squares of the logarithms.";
+                   (machine["load"].is_array() ? fixedNumber(machine["load"][0].get<double>(), 1) : "unknown") + " before; medians of " +
+                   std::to_string(repeat) + ". _cpu_ms is processor time of all threads, dashed lines are least squares of the logarithms.";
     for (const MeasuredAxis& measured : axes) {
         page.bodyHtml += headingHtml(measured.axis.name) + paragraphHtml("Fixed: " + measured.axis.fixed + ".") + chartHtml(scalingChart(measured));
         page.bodyHtml += tableHtml(exponentTable(measured)) + foldedHtml("What was measured", tableHtml(pointTable(measured)));

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/report/table.h"
 #include "apps/bench/scaling.h"
+#include "core/report/table.h"
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

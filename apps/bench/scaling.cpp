@@ -1,8 +1,8 @@
 #include "apps/bench/scaling.h"
 
+#include "apps/sweep/measurement.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "apps/sweep/measurement.h"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,8 @@ std::vector<std::string> makeSeriesNames()
         std::replace(pass.begin(), pass.end(), ' ', '_');
         for (const char* what : kColumnsOfPass) names.push_back(pass + what);
     }
-    for (const char* name : {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept", "bytes", "gpu_bytes"}) names.emplace_back(name);
+    for (const char* name : {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept", "bytes", "gpu_bytes"})
+        names.emplace_back(name);
     return names;
 }
 
@@ -107,8 +108,8 @@ std::vector<double> scalingValues(const Frame& frame)
     }
     std::vector<double> values = {frameCpu, frameWall};
     for (const auto& sums : passes) values.insert(values.end(), sums.begin(), sums.end());
-    for (const std::uint64_t count : {frame.cones.cones, frame.cones.steps, frame.cones.voxelTaps, frame.cones.lrsmSamples, frame.voxelsSet, drawn, std::uint64_t(layers),
-                                      std::uint64_t(bytes), std::uint64_t(gpuBytes)})
+    for (const std::uint64_t count : {frame.cones.cones, frame.cones.steps, frame.cones.voxelTaps, frame.cones.lrsmSamples, frame.voxelsSet, drawn,
+                                      std::uint64_t(layers), std::uint64_t(bytes), std::uint64_t(gpuBytes)})
         values.push_back(static_cast<double>(count));
     return values;
 }

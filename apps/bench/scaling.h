@@ -1,7 +1,7 @@
 #pragma once
 
-#include "conetrace/render.h"
 #include "apps/bench/power_fit.h"
+#include "conetrace/render.h"
 
 #include <functional>
 #include <memory>
@@ -37,13 +37,13 @@ struct ScalingPoint {
 struct ScalingExpectation {
     std::string series;  ///< as in scalingSeriesNames()
     double low = 0.0, high = 0.0;
-    std::string why;     ///< a clause
+    std::string why;  ///< a clause
 };
 
 struct ScalingAxis {
     std::string name, xLabel;
-    std::string xSeries;  ///< where x is what the frame turned out to have (layers kept); else empty
-    std::string fixed;    ///< all else, in words
+    std::string xSeries;                       ///< where x is what the frame turned out to have (layers kept); else empty
+    std::string fixed;                         ///< all else, in words
     std::vector<ScalingExpectation> expected;  ///< the first is that of the pass that the axis drives
     Camera camera;
     std::vector<ScalingPoint> points;
@@ -93,9 +93,9 @@ struct ScalingCurve {
 };
 
 struct ScalingResult {
-    std::vector<std::size_t> points;  ///< of the axis, those that were rendered
-    std::vector<double> x;            ///< one a point
-    std::vector<ScalingCurve> curves; ///< of every series that is not 0 throughout
+    std::vector<std::size_t> points;   ///< of the axis, those that were rendered
+    std::vector<double> x;             ///< one a point
+    std::vector<ScalingCurve> curves;  ///< of every series that is not 0 throughout
     const ScalingCurve* find(const std::string& series) const;
 };
 ScalingResult summarizeScaling(const ScalingAxis& axis, const std::vector<ScalingSample>& samples);

@@ -1,7 +1,7 @@
-#include "core/base/errors.h"
-#include "core/settings/settings_table.h"
 #include "apps/bench/scaling.h"
 #include "apps/bench/scaling_scenes.h"
+#include "core/base/errors.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 
@@ -16,8 +16,7 @@ constexpr AxisSize kQuickSize{32, 18, 32, 64};
 /// One axis under construction: all points share what the axis does not change.
 class AxisMaker {
   public:
-    AxisMaker(const ScalingBase& base, const std::string& name, const std::string& xLabel, AxisSize size)
-        : base_(base), size_(base.quick ? kQuickSize : size)
+    AxisMaker(const ScalingBase& base, const std::string& name, const std::string& xLabel, AxisSize size) : base_(base), size_(base.quick ? kQuickSize : size)
     {
         axis_.name = name;
         axis_.xLabel = xLabel;
@@ -242,8 +241,9 @@ struct AxisRecipe {
 
 const std::vector<AxisRecipe>& axisRecipes()
 {
-    static const std::vector<AxisRecipe> all = {{"pixels", pixelsAxis}, {"cones", conesAxis}, {"sets", setsAxis}, {"layers", layersAxis}, {"lights", lightsAxis},
-                                               {"voxels", voxelsAxis}, {"rsm", rsmAxis},     {"triangles", trianglesAxis}, {"threads", threadsAxis}};
+    static const std::vector<AxisRecipe> all = {{"pixels", pixelsAxis}, {"cones", conesAxis},         {"sets", setsAxis},
+                                                {"layers", layersAxis}, {"lights", lightsAxis},       {"voxels", voxelsAxis},
+                                                {"rsm", rsmAxis},       {"triangles", trianglesAxis}, {"threads", threadsAxis}};
     return all;
 }
 

@@ -1,7 +1,7 @@
 #include "apps/bench/scaling_scenes.h"
 
-#include "core/base/errors.h"
 #include "core/base/elementary.h"
+#include "core/base/errors.h"
 
 namespace lrsm {
 namespace {

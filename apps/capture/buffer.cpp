@@ -47,9 +47,7 @@ TextureShape textureShapeOf(const Buffer& buffer)
         shape.channels = extents.back();
         extents.pop_back();
     }
-    const auto from = [&](std::size_t fromLast) {
-        return extents.size() > fromLast ? static_cast<std::uint32_t>(extents[extents.size() - 1 - fromLast]) : 1u;
-    };
+    const auto from = [&](std::size_t fromLast) { return extents.size() > fromLast ? static_cast<std::uint32_t>(extents[extents.size() - 1 - fromLast]) : 1u; };
     shape.width = from(0);
     shape.height = from(1);
     (buffer.dds->volume ? shape.depth : shape.layers) = from(2);
@@ -90,13 +88,25 @@ std::string extentsText(std::uint32_t layers, std::uint32_t depth, std::uint32_t
 
 }  // namespace
 
-std::string_view nameOf(Encoding encoding) { return kEncodings[static_cast<std::size_t>(encoding)]; }
+std::string_view nameOf(Encoding encoding)
+{
+    return kEncodings[static_cast<std::size_t>(encoding)];
+}
 
-Encoding encodingByName(std::string_view name, const std::string& place) { return byName<Encoding>(kEncodings, name, place); }
+Encoding encodingByName(std::string_view name, const std::string& place)
+{
+    return byName<Encoding>(kEncodings, name, place);
+}
 
-std::string_view nameOf(Tolerance::Kind kind) { return kToleranceKinds[static_cast<std::size_t>(kind)]; }
+std::string_view nameOf(Tolerance::Kind kind)
+{
+    return kToleranceKinds[static_cast<std::size_t>(kind)];
+}
 
-Tolerance::Kind toleranceKindByName(std::string_view name, const std::string& place) { return byName<Tolerance::Kind>(kToleranceKinds, name, place); }
+Tolerance::Kind toleranceKindByName(std::string_view name, const std::string& place)
+{
+    return byName<Tolerance::Kind>(kToleranceKinds, name, place);
+}
 
 std::size_t valueCount(const Buffer& buffer)
 {
@@ -109,14 +119,14 @@ double decodedValue(const Buffer& buffer, std::size_t i)
     if (buffer.encoding == Encoding::bits) return (static_cast<unsigned>(buffer.bytes[i / 8]) >> (i & 7)) & 1u;
     const bool unorm = buffer.encoding == Encoding::unorm;
     switch (buffer.dtype) {
-        case Dtype::u1: return double(buffer.as<std::uint8_t>()[i]) / (unorm ? 255.0 : 1.0);
-        case Dtype::u2: return double(buffer.as<std::uint16_t>()[i]) / (unorm ? 65535.0 : 1.0);
-        case Dtype::u4: return double(buffer.as<std::uint32_t>()[i]);
-        case Dtype::u8: return static_cast<double>(buffer.as<std::uint64_t>()[i]);
-        case Dtype::i4: return double(buffer.as<std::int32_t>()[i]);
-        case Dtype::f2: return double(floatFromHalf(buffer.as<std::uint16_t>()[i]));
-        case Dtype::f4: return double(buffer.as<float>()[i]);
-        case Dtype::f8: break;
+    case Dtype::u1: return double(buffer.as<std::uint8_t>()[i]) / (unorm ? 255.0 : 1.0);
+    case Dtype::u2: return double(buffer.as<std::uint16_t>()[i]) / (unorm ? 65535.0 : 1.0);
+    case Dtype::u4: return double(buffer.as<std::uint32_t>()[i]);
+    case Dtype::u8: return static_cast<double>(buffer.as<std::uint64_t>()[i]);
+    case Dtype::i4: return double(buffer.as<std::int32_t>()[i]);
+    case Dtype::f2: return double(floatFromHalf(buffer.as<std::uint16_t>()[i]));
+    case Dtype::f4: return double(buffer.as<float>()[i]);
+    case Dtype::f8: break;
     }
     return buffer.as<double>()[i];
 }
@@ -162,10 +172,11 @@ std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsText
     const TextureShape shape = textureShapeOf(description);
     if (texture.format != dds.format)
         throw InputError(place, "is " + std::string(nameOf(texture.format)) + " where " + description.name + " is " + std::string(nameOf(dds.format)));
-    if (dds.mip >= texture.mips) throw InputError(place, "has " + std::to_string(texture.mips) + " mips; " + description.name + " is mip " + std::to_string(dds.mip));
+    if (dds.mip >= texture.mips)
+        throw InputError(place, "has " + std::to_string(texture.mips) + " mips; " + description.name + " is mip " + std::to_string(dds.mip));
     const auto extent = [&](std::uint32_t n) { return std::max(1u, n >> dds.mip); };
-    if (texture.volume != dds.volume || texture.layers != shape.layers || extent(texture.width) != shape.width ||
-        extent(texture.height) != shape.height || extent(texture.depth) != shape.depth)
+    if (texture.volume != dds.volume || texture.layers != shape.layers || extent(texture.width) != shape.width || extent(texture.height) != shape.height ||
+        extent(texture.depth) != shape.depth)
         throw InputError(place, "is " + extentsText(texture.layers, extent(texture.depth), extent(texture.height), extent(texture.width)) + " at mip " +
                                     std::to_string(dds.mip) + " where " + description.name + " is " +
                                     extentsText(shape.layers, shape.depth, shape.height, shape.width));
@@ -178,8 +189,7 @@ std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsText
     const std::size_t count = shape.texels() / shape.layers, fromStride = bytesPerTexel(texture.format), toStride = shape.channels * shape.elementBytes;
     for (std::uint32_t layer = 0; layer < shape.layers; ++layer) {
         const std::span<const std::byte> level = texture.level(layer, dds.mip);
-        for (std::size_t i = 0; i < count; ++i)
-            std::memcpy(bytes.data() + (layer * count + i) * toStride, level.data() + i * fromStride, toStride);
+        for (std::size_t i = 0; i < count; ++i) std::memcpy(bytes.data() + (layer * count + i) * toStride, level.data() + i * fromStride, toStride);
     }
     return bytes;
 }

@@ -28,10 +28,10 @@ struct Tolerance {
     };
     Kind kind = Kind::exact;
     double value = 0.0;
-    double floor = 0.0;     ///< relative: below this the bound stays what it is there
-    double outliers = 0.0;  ///< fraction that may lie outside: decisions (coverage, layers) that flip on their edge
-    double differing = 1.0; ///< fraction that may differ at all: tells rounding that is allowed from rounding that is wrong everywhere
-    std::string reason;     ///< one sentence
+    double floor = 0.0;      ///< relative: below this the bound stays what it is there
+    double outliers = 0.0;   ///< fraction that may lie outside: decisions (coverage, layers) that flip on their edge
+    double differing = 1.0;  ///< fraction that may differ at all: tells rounding that is allowed from rounding that is wrong everywhere
+    std::string reason;      ///< one sentence
     bool operator==(const Tolerance&) const = default;
 };
 
@@ -55,9 +55,9 @@ struct Buffer {
     std::vector<std::string> components;  ///< of the last axis; empty: there is no component axis. An empty name is unused and not compared.
     std::string meaning, space, unit;     ///< one line each; unit "" for none
     Tolerance tolerance;
-    std::string file;                     ///< the .npy, in the capture's folder
+    std::string file;  ///< the .npy, in the capture's folder
     std::optional<DdsPlace> dds;
-    std::string sha256;                   ///< of `bytes`
+    std::string sha256;  ///< of `bytes`
     std::vector<std::byte> bytes;
 
     std::size_t elements() const { return elementCount(shape, name); }

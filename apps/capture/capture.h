@@ -1,9 +1,9 @@
 #pragma once
 
 #include "apps/capture/buffer.h"
-#include "core/settings/settings.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 #include "lrsm/layers.h"
 #include "voxel/bit_grid.h"
 
@@ -21,9 +21,9 @@ inline constexpr const char* kManifestFile = "manifest.json";
 struct CapturedLight {
     Light light;
     LightProjection projection;
-    std::vector<LayerRange> partition;        ///< all ranges asked for (partition() of layers.h)
-    std::vector<int> stored;                  ///< of each: its layer in the LRSM, -1 where it was dropped as empty
-    std::vector<std::uint64_t> validTexels;   ///< of each layer stored
+    std::vector<LayerRange> partition;       ///< all ranges asked for (partition() of layers.h)
+    std::vector<int> stored;                 ///< of each: its layer in the LRSM, -1 where it was dropped as empty
+    std::vector<std::uint64_t> validTexels;  ///< of each layer stored
 
     /// Of the layers stored: Lrsm::ranges.
     std::vector<LayerRange> storedRanges() const;
@@ -46,7 +46,7 @@ struct Capture {
     std::string version;               ///< of the program
     std::string sceneName, sceneHash;  ///< hashScene
     Aabb sceneBounds;
-    bool sceneComplete = false;        ///< the scene's buffers are all of it: it has no textures
+    bool sceneComplete = false;  ///< the scene's buffers are all of it: it has no textures
     Settings settings;
     Requirements needs;
     int width = 0, height = 0;

@@ -1,10 +1,10 @@
+#include "apps/capture/pictures.h"
+#include "apps/capture/record.h"
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/common/memory.h"
 #include "apps/common/progress.h"
-#include "apps/capture/pictures.h"
-#include "apps/capture/record.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
@@ -51,7 +51,8 @@ void printSummary(const Capture& capture, std::size_t bytes, const std::string& 
                 held += buffer.bytes.size();
                 ++count;
             }
-        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::setw(4) << count << " buffers" << std::setw(13) << megabytes(held) << "\n";
+        std::cout << "  " << std::left << std::setw(12) << pass.name << std::right << std::setw(4) << count << " buffers" << std::setw(13) << megabytes(held)
+                  << "\n";
     }
     std::cout << where << ": " << capture.buffers.size() << " buffers, " << megabytes(bytes) << " with their textures; manifest.json says what is what\n";
 }
@@ -69,10 +70,11 @@ int run(const Options& options)
     const Requirements needs = analyseRequirements(scene, settings.force);
 
     Progress progress(options.quiet);
-    RecordOptions record{.width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds,
-                         .progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); }};
-    const std::size_t predicted =
-        predictCaptureBytes(chosenBuffers(scene, needs, settings, record, countLayersKept(scene, needs, settings)));
+    RecordOptions record{
+        .width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds, .progress = [&](const std::string& pass, double fraction) {
+            progress.show(pass, fraction);
+        }};
+    const std::size_t predicted = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, countLayersKept(scene, needs, settings)));
     refuseFullDisk(folder, predicted);
     if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(predicted) << std::endl;
 
@@ -102,7 +104,9 @@ Command addCapture(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
-    parser->add_option("--only", options->only, "passes whose buffers are kept: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")->delimiter(',')->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes whose buffers are kept: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");
     parser->add_flag("--no-pictures", options->noPictures, "leave out the EXR files and the contact sheet");
     return {parser, [options] { return run(*options); }};

@@ -51,8 +51,14 @@ void load(const Capture& capture, const std::string& name, std::size_t count, co
 // The two textures of an RSM texel: four floats each, one after the other.
 static_assert(sizeof(RsmTexel) == 2 * kChannels * sizeof(float) && offsetof(RsmTexel, normal) == kChannels * sizeof(float));
 
-std::string rsmPrefix(std::size_t light) { return "rsm" + std::to_string(light) + "."; }
-std::string lrsmName(std::size_t light, const char* texture, int lod) { return "lrsm" + std::to_string(light) + "." + texture + ".mip" + std::to_string(lod); }
+std::string rsmPrefix(std::size_t light)
+{
+    return "rsm" + std::to_string(light) + ".";
+}
+std::string lrsmName(std::size_t light, const char* texture, int lod)
+{
+    return "lrsm" + std::to_string(light) + "." + texture + ".mip" + std::to_string(lod);
+}
 
 struct LrsmTexture {
     const char* name;

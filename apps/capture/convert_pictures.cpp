@@ -5,7 +5,10 @@ namespace lrsm {
 
 namespace {
 
-std::size_t pixelsOf(const Capture& capture) { return static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height); }
+std::size_t pixelsOf(const Capture& capture)
+{
+    return static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height);
+}
 
 template <class T>
 Image<T> imageFrom(const Capture& capture, const std::string& name, Dtype dtype = Dtype::f4)
@@ -70,9 +73,15 @@ Gathered gatheredFromCapture(const Capture& capture)
     return gathered;
 }
 
-void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<Buffer>& buffers) { copyTo(buffers, name, picture.texels); }
+void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<Buffer>& buffers)
+{
+    copyTo(buffers, name, picture.texels);
+}
 
-Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name) { return imageFrom<Vec3>(capture, name); }
+Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name)
+{
+    return imageFrom<Vec3>(capture, name);
+}
 
 Image<Vec3> irradianceFromCapture(const Capture& capture)
 {

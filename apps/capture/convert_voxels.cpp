@@ -22,7 +22,10 @@ void unpackRows(const BitGrid& grid, Buffer& buffer)
             }
 }
 
-std::string mipName(int level) { return "voxel.mip" + std::to_string(level); }
+std::string mipName(int level)
+{
+    return "voxel.mip" + std::to_string(level);
+}
 
 }  // namespace
 

@@ -22,14 +22,14 @@ struct FormatRow {
     int channels;
 };
 constexpr std::array<FormatRow, 9> kFormats = {{{DxgiFormat::R32G32B32A32_FLOAT, "R32G32B32A32_FLOAT", 16, 4},
-                                               {DxgiFormat::R16G16B16A16_FLOAT, "R16G16B16A16_FLOAT", 8, 4},
-                                               {DxgiFormat::R16G16B16A16_UNORM, "R16G16B16A16_UNORM", 8, 4},
-                                               {DxgiFormat::R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, 4},
-                                               {DxgiFormat::R32_FLOAT, "R32_FLOAT", 4, 1},
-                                               {DxgiFormat::R32_UINT, "R32_UINT", 4, 1},
-                                               {DxgiFormat::R16_FLOAT, "R16_FLOAT", 2, 1},
-                                               {DxgiFormat::R16_UNORM, "R16_UNORM", 2, 1},
-                                               {DxgiFormat::R8_UNORM, "R8_UNORM", 1, 1}}};
+                                                {DxgiFormat::R16G16B16A16_FLOAT, "R16G16B16A16_FLOAT", 8, 4},
+                                                {DxgiFormat::R16G16B16A16_UNORM, "R16G16B16A16_UNORM", 8, 4},
+                                                {DxgiFormat::R8G8B8A8_UNORM, "R8G8B8A8_UNORM", 4, 4},
+                                                {DxgiFormat::R32_FLOAT, "R32_FLOAT", 4, 1},
+                                                {DxgiFormat::R32_UINT, "R32_UINT", 4, 1},
+                                                {DxgiFormat::R16_FLOAT, "R16_FLOAT", 2, 1},
+                                                {DxgiFormat::R16_UNORM, "R16_UNORM", 2, 1},
+                                                {DxgiFormat::R8_UNORM, "R8_UNORM", 1, 1}}};
 
 const FormatRow& rowOf(DxgiFormat format)
 {
@@ -40,10 +40,22 @@ const FormatRow& rowOf(DxgiFormat format)
 constexpr std::size_t kWords = 37;  // 1 + 31 + 5
 static_assert(kWords * sizeof(std::uint32_t) == kDdsHeaderBytes);
 enum Word : std::size_t {
-    magic = 0, size = 1, flags = 2, height = 3, width = 4, pitch = 5, depth = 6, mipCount = 7,
-    pixelFormatSize = 19, pixelFormatFlags = 20, fourCC = 21,
-    caps = 27, caps2 = 28,
-    dxgiFormat = 32, resourceDimension = 33, arraySize = 35,
+    magic = 0,
+    size = 1,
+    flags = 2,
+    height = 3,
+    width = 4,
+    pitch = 5,
+    depth = 6,
+    mipCount = 7,
+    pixelFormatSize = 19,
+    pixelFormatFlags = 20,
+    fourCC = 21,
+    caps = 27,
+    caps2 = 28,
+    dxgiFormat = 32,
+    resourceDimension = 33,
+    arraySize = 35,
 };
 constexpr std::uint32_t kDdsMagic = 0x20534444, kHeaderSize = 124, kPixelFormatSize = 32, kFourCC = 0x4, kDx10 = 0x30315844;
 constexpr std::uint32_t kFlags = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000;  // caps, height, width, pitch, pixel format, mip count
@@ -52,13 +64,22 @@ constexpr std::uint32_t kCapsTexture = 0x1000, kCapsComplex = 0x8, kCapsMipmap =
 constexpr std::uint32_t kDimension2D = 3, kDimension3D = 4;
 constexpr std::uint32_t kLargestEdge = 16384, kMostLayers = 2048;
 
-std::uint32_t largestMipCount(const DdsTexture& t) { return static_cast<std::uint32_t>(std::bit_width(std::max({t.width, t.height, t.depth}))); }
+std::uint32_t largestMipCount(const DdsTexture& t)
+{
+    return static_cast<std::uint32_t>(std::bit_width(std::max({t.width, t.height, t.depth})));
+}
 
-bool within(std::uint32_t value, std::uint32_t most) { return value >= 1 && value <= most; }
+bool within(std::uint32_t value, std::uint32_t most)
+{
+    return value >= 1 && value <= most;
+}
 
 }  // namespace
 
-std::string_view nameOf(DxgiFormat format) { return rowOf(format).name; }
+std::string_view nameOf(DxgiFormat format)
+{
+    return rowOf(format).name;
+}
 
 DxgiFormat dxgiFormatByName(std::string_view name, const std::string& place)
 {
@@ -67,9 +88,15 @@ DxgiFormat dxgiFormatByName(std::string_view name, const std::string& place)
     throw InputError(place, "\"" + std::string(name) + "\" is no texture format of captures");
 }
 
-std::size_t bytesPerTexel(DxgiFormat format) { return rowOf(format).bytes; }
+std::size_t bytesPerTexel(DxgiFormat format)
+{
+    return rowOf(format).bytes;
+}
 
-int channelsOf(DxgiFormat format) { return rowOf(format).channels; }
+int channelsOf(DxgiFormat format)
+{
+    return rowOf(format).channels;
+}
 
 std::size_t DdsTexture::levelBytes(std::uint32_t mip) const
 {

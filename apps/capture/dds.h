@@ -33,10 +33,10 @@ int channelsOf(DxgiFormat format);
 struct DdsTexture {
     DxgiFormat format = DxgiFormat::R8_UNORM;
     std::uint32_t width = 1, height = 1;
-    std::uint32_t depth = 1;   ///< slices of level 0; a volume has one layer
+    std::uint32_t depth = 1;  ///< slices of level 0; a volume has one layer
     std::uint32_t mips = 1;
     std::uint32_t layers = 1;
-    bool volume = false;       ///< also when depth is 1
+    bool volume = false;            ///< also when depth is 1
     std::vector<std::byte> texels;  ///< layer by layer, each with all its mips, largest first
 
     std::size_t levelBytes(std::uint32_t mip) const;

@@ -13,7 +13,10 @@ using Shape = std::vector<std::size_t>;
 
 constexpr const char* kWorld = "world";
 
-std::size_t sz(int n) { return static_cast<std::size_t>(n); }
+std::size_t sz(int n)
+{
+    return static_cast<std::size_t>(n);
+}
 
 struct Text {
     std::string meaning, space, unit;
@@ -33,8 +36,8 @@ class Catalogue {
   public:
     std::vector<Buffer> buffers;
 
-    Buffer& add(const std::string& name, const std::string& pass, Dtype dtype, const Shape& shape, const Names& axes, const Names& components,
-                const Text& text, const Tolerance& tolerance)
+    Buffer& add(const std::string& name, const std::string& pass, Dtype dtype, const Shape& shape, const Names& axes, const Names& components, const Text& text,
+                const Tolerance& tolerance)
     {
         Buffer buffer;
         buffer.name = name;
@@ -83,15 +86,17 @@ void describeScene(Catalogue& out, const Scene& scene)
     list("normals", Dtype::f4, n.vertices, {"x", "y", "z"}, "vertex", {"unit", kWorld, ""});
     if (n.uv0) list("uv0", Dtype::f4, n.vertices, {"u", "v"}, "vertex", {"first texture coordinates; 0 for meshes without", "texture", ""});
     if (n.uv1) list("uv1", Dtype::f4, n.vertices, {"u", "v"}, "vertex", {"second texture coordinates; 0 for meshes without", "texture", ""});
-    if (n.tangents) list("tangents", Dtype::f4, n.vertices, {"x", "y", "z", "sign"}, "vertex", {"bitangent = sign cross(normal, tangent); 0 for meshes without", kWorld, ""});
+    if (n.tangents)
+        list("tangents", Dtype::f4, n.vertices, {"x", "y", "z", "sign"}, "vertex",
+             {"bitangent = sign cross(normal, tangent); 0 for meshes without", kWorld, ""});
     if (n.colors) list("colors", Dtype::f4, n.vertices, {"r", "g", "b", "a"}, "vertex", {"multiply the base colour; 0 for meshes without", "linear", ""});
-    list("triangles", Dtype::u4, n.triangles, {"a", "b", "c"}, "triangle", {"vertices, counter-clockwise seen from the front; submitted in this order", "", ""});
+    list("triangles", Dtype::u4, n.triangles, {"a", "b", "c"}, "triangle",
+         {"vertices, counter-clockwise seen from the front; submitted in this order", "", ""});
     list("triangle_mesh", Dtype::u4, n.triangles, {}, "triangle", {"mesh; object id minus 1", "", ""});
     list("meshes", Dtype::u4, scene.meshes.size(), {"material", "first_vertex", "vertices", "first_triangle", "triangles", "streams"}, "mesh",
          {"streams: 1 uv0, 2 uv1, 4 tangents, 8 colors", "", ""});
-    list("materials", Dtype::f4, scene.materials.size(),
-         {"albedo.r", "albedo.g", "albedo.b", "f0.r", "f0.g", "f0.b", "roughness", "double_sided", "textured"}, "material",
-         {"as without textures and vertex colours; f0 is 0 where there is no specular part", "linear", ""});
+    list("materials", Dtype::f4, scene.materials.size(), {"albedo.r", "albedo.g", "albedo.b", "f0.r", "f0.g", "f0.b", "roughness", "double_sided", "textured"},
+         "material", {"as without textures and vertex colours; f0 is 0 where there is no specular part", "linear", ""});
 }
 
 void describeTables(Catalogue& out, const CaptureTables& tables)
@@ -136,8 +141,8 @@ void describeVoxels(Catalogue& out, const VoxelSettings& settings)
         Buffer& mip = out.add("voxel.mip" + std::to_string(level), "voxel mips", unorm ? Dtype::u1 : Dtype::f4, shape, axes, components,
                               {directional ? "share of columns along the axis that are covered" : "opacity", "grid", ""}, tolerances::voxelMip(unorm));
         if (unorm) mip.encoding = Encoding::unorm;
-        const DxgiFormat format = unorm ? (directional ? DxgiFormat::R8G8B8A8_UNORM : DxgiFormat::R8_UNORM)
-                                        : (directional ? DxgiFormat::R32G32B32A32_FLOAT : DxgiFormat::R32_FLOAT);
+        const DxgiFormat format =
+            unorm ? (directional ? DxgiFormat::R8G8B8A8_UNORM : DxgiFormat::R8_UNORM) : (directional ? DxgiFormat::R32G32B32A32_FLOAT : DxgiFormat::R32_FLOAT);
         const auto mipNumber = static_cast<std::uint32_t>(level);
         mip.dds = oneChain ? DdsPlace{"voxel.dds", mipNumber, format, true} : DdsPlace{"voxel.mips.dds", mipNumber - 1, format, true};
     }
@@ -173,11 +178,11 @@ void describeLrsm(Catalogue& out, const Settings& settings, std::size_t light, i
         }
     };
     const auto half = [&](int) { return tolerances::layerHalf(gpu); };
-    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", "W/(m^2 sr)"}, half,
-            gpu ? kHalf4 : kFloat4);
+    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", "W/(m^2 sr)"}, half, gpu ? kHalf4 : kFloat4);
     texture("normal", {"x", "y", "z", "alpha"}, {"normal times alpha, and alpha", kWorld, ""}, half, gpu ? kHalf4 : kFloat4);
-    texture("depth", {"z", "z2", "alpha", ""}, {"alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), and alpha", "layer's depth", ""},
-            [&](int lod) { return tolerances::layerDepth(gpu, lod); }, gpu ? kUnorm4 : kFloat4);
+    texture(
+        "depth", {"z", "z2", "alpha", ""}, {"alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), and alpha", "layer's depth", ""},
+        [&](int lod) { return tolerances::layerDepth(gpu, lod); }, gpu ? kUnorm4 : kFloat4);
 }
 
 void describeGBuffer(Catalogue& out, int width, int height, bool specular, double diagonal)
@@ -203,15 +208,17 @@ void describeLight(Catalogue& out, int width, int height, const ConeSettings& co
     const Names rgb = {"r", "g", "b"}, rgba = {"r", "g", "b", "opacity"};
     const std::string radiance = "W/(m^2 sr)", irradiance = "W/m^2", eye = "picture";
     out.picture("direct.radiance", "direct", width, height, rgb, {"direct light reflected towards the eye", eye, radiance}, tolerances::direct());
-    out.add("cones.diffuse", "cones", Dtype::f4, {sz(cones.count * cones.setsPerPixel), sz(height), sz(width), 4}, {"cone", "row", "column", "component"},
-            rgba, {"I of Eq. 1 and opacity of each diffuse cone, in the order of their sum", eye, radiance}, tolerances::cones());
+    out.add("cones.diffuse", "cones", Dtype::f4, {sz(cones.count * cones.setsPerPixel), sz(height), sz(width), 4}, {"cone", "row", "column", "component"}, rgba,
+            {"I of Eq. 1 and opacity of each diffuse cone, in the order of their sum", eye, radiance}, tolerances::cones());
     out.picture("cones.irradiance", "cones", width, height, rgb, {"pi times the weighted sum of the diffuse cones", eye, irradiance}, tolerances::cones());
     out.picture("cones.opacity", "cones", width, height, {}, {"weighted mean opacity of the diffuse cones", eye, ""}, tolerances::coneOpacity());
     if (specular) out.picture("cones.specular", "cones", width, height, rgba, {"I and opacity of the specular cone", eye, radiance}, tolerances::cones());
     if (cones.filter)
-        out.picture("filter.irradiance", "filter", width, height, rgb, {"irradiance averaged over 4x4 pixels of the same surface", eye, irradiance}, tolerances::filter());
+        out.picture("filter.irradiance", "filter", width, height, rgb, {"irradiance averaged over 4x4 pixels of the same surface", eye, irradiance},
+                    tolerances::filter());
     out.picture("composite.diffuse", "composite", width, height, rgb, {"albedo irradiance / pi", eye, radiance}, tolerances::product());
-    out.picture("composite.specular", "composite", width, height, rgb, {"specular cone times the lobe's directional albedo", eye, radiance}, tolerances::specularPart());
+    out.picture("composite.specular", "composite", width, height, rgb, {"specular cone times the lobe's directional albedo", eye, radiance},
+                tolerances::specularPart());
     out.picture("composite.combined", "composite", width, height, rgb, {"direct + diffuse + specular", eye, radiance}, tolerances::product());
 }
 

@@ -15,9 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string jsonText(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string jsonText(const Json& json)
+{
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
-std::string pathIn(const std::string& folder, const std::string& file) { return (std::filesystem::path(folder) / file).string(); }
+std::string pathIn(const std::string& folder, const std::string& file)
+{
+    return (std::filesystem::path(folder) / file).string();
+}
 
 void readBytes(const std::string& folder, Buffer& buffer)
 {
@@ -47,8 +53,7 @@ void writeCapture(OutputFolder& folder, const Capture& capture)
 std::size_t predictCaptureBytes(const std::vector<Buffer>& buffers)
 {
     std::size_t bytes = 0;
-    for (const Buffer& buffer : buffers)
-        bytes += npyHeader(buffer.dtype, buffer.shape).size() + buffer.elements() * sizeOf(buffer.dtype);
+    for (const Buffer& buffer : buffers) bytes += npyHeader(buffer.dtype, buffer.shape).size() + buffer.elements() * sizeOf(buffer.dtype);
     for (const NamedTexture& texture : texturesOf(buffers)) bytes += kDdsHeaderBytes + texture.texture.byteSize();
     return bytes;
 }

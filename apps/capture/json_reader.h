@@ -69,7 +69,8 @@ class JsonReader {
     }
     std::int64_t whole(std::int64_t least, std::int64_t most) const
     {
-        const bool tooLarge = value_->is_number_unsigned() && value_->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+        const bool tooLarge =
+            value_->is_number_unsigned() && value_->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
         if (!value_->is_number_integer() || tooLarge || value_->get<std::int64_t>() < least || value_->get<std::int64_t>() > most)
             fail("must be a whole number in " + std::to_string(least) + " .. " + std::to_string(most));
         return value_->get<std::int64_t>();

@@ -21,7 +21,8 @@ TextureUse textureUse(const JsonReader& in)
     use.uvSet = static_cast<int>(in["uv_set"].whole(0, 1));
     const auto rows = in["scale_rotation"].items(2);
     for (int row = 0; row < 2; ++row)
-        for (int column = 0; column < 2; ++column) use.uvScaleRotation[column][row] = rows[static_cast<std::size_t>(row)].items(2)[static_cast<std::size_t>(column)].real();
+        for (int column = 0; column < 2; ++column)
+            use.uvScaleRotation[column][row] = rows[static_cast<std::size_t>(row)].items(2)[static_cast<std::size_t>(column)].real();
     const auto offset = in["offset"].items(2);
     use.uvOffset = Vec2(offset[0].real(), offset[1].real());
     return use;
@@ -167,7 +168,8 @@ Buffer buffer(const JsonReader& in)
     b.file = fileName(named["file"]);
     b.dtype = dtypeByName(named["dtype"].text(), named["dtype"].path());
     b.encoding = encodingByName(named["encoding"].text(), named["encoding"].path());
-    for (const JsonReader& extent : named["shape"].items()) b.shape.push_back(static_cast<std::size_t>(extent.whole(0, std::numeric_limits<std::int64_t>::max())));
+    for (const JsonReader& extent : named["shape"].items())
+        b.shape.push_back(static_cast<std::size_t>(extent.whole(0, std::numeric_limits<std::int64_t>::max())));
     b.axes = named["axes"].texts();
     if (b.axes.size() != b.shape.size()) named["axes"].fail("must name each of the shape's axes");
     elementCount(b.shape, named["shape"].path());
@@ -178,7 +180,8 @@ Buffer buffer(const JsonReader& in)
     if (b.encoding == Encoding::unorm && b.dtype != Dtype::u1 && b.dtype != Dtype::u2) named["encoding"].fail("unorm needs u1 or u2");
     if (named.has("dds")) {
         const JsonReader dds = named["dds"];
-        b.dds = DdsPlace{fileName(dds["file"]), static_cast<std::uint32_t>(dds["mip"].whole(0, 31)), dxgiFormatByName(dds["format"].text(), dds["format"].path()), dds["volume"].flag()};
+        b.dds = DdsPlace{fileName(dds["file"]), static_cast<std::uint32_t>(dds["mip"].whole(0, 31)),
+                         dxgiFormatByName(dds["format"].text(), dds["format"].path()), dds["volume"].flag()};
     }
     b.meaning = named["meaning"].text();
     b.space = named["space"].text();

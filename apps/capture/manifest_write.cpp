@@ -3,8 +3,8 @@
 #include "apps/capture/tables.h"
 #include "conetrace/frame/direct.h"
 #include "core/base/elementary.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/brdf.h"
+#include "core/settings/settings_table.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json vector(const Vec3& v)
+{
+    return {v.x, v.y, v.z};
+}
 
 Json rowsOf(const Mat4& m)
 {
@@ -23,7 +26,10 @@ Json rowsOf(const Mat4& m)
     return rows;
 }
 
-Json finiteOrNull(float value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finiteOrNull(float value)
+{
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 const char* nameOf(LightType type)
 {
@@ -34,7 +40,10 @@ Json textureUse(const TextureUse& use)
 {
     if (!use) return nullptr;
     const glm::mat2& m = use.uvScaleRotation;
-    return {{"texture", use.texture}, {"uv_set", use.uvSet}, {"scale_rotation", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}, {"offset", {use.uvOffset.x, use.uvOffset.y}}};
+    return {{"texture", use.texture},
+            {"uv_set", use.uvSet},
+            {"scale_rotation", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}},
+            {"offset", {use.uvOffset.x, use.uvOffset.y}}};
 }
 
 Json materialJson(const Material& m)
@@ -65,7 +74,11 @@ Json sceneJson(const Capture& c)
 
 Json requiresJson(const Requirements& needs)
 {
-    return {{"specular", needs.specular}, {"alpha_test", needs.alphaTest}, {"normal_maps", needs.normalMaps}, {"textures", needs.textures}, {"vertex_colors", needs.vertexColors}};
+    return {{"specular", needs.specular},
+            {"alpha_test", needs.alphaTest},
+            {"normal_maps", needs.normalMaps},
+            {"textures", needs.textures},
+            {"vertex_colors", needs.vertexColors}};
 }
 
 Json cameraJson(const Capture& c)
@@ -89,25 +102,15 @@ Json gridJson(const Capture& c)
     shape.axes = c.settings.voxel.axes;
     Json scales = Json::array();
     for (int level = 0; c.grid.resolution >> level >= 1; ++level) scales.push_back(densityScale(shape, level));
-    return {{"origin", vector(c.grid.origin)},
-            {"voxel_size", c.grid.voxelSize},
-            {"edge", double(c.grid.voxelSize) * c.grid.resolution},
-            {"resolution", c.grid.resolution},
-            {"levels", scales.size()},
-            {"density_scale", scales}};
+    return {{"origin", vector(c.grid.origin)}, {"voxel_size", c.grid.voxelSize}, {"edge", double(c.grid.voxelSize) * c.grid.resolution},
+            {"resolution", c.grid.resolution}, {"levels", scales.size()},        {"density_scale", scales}};
 }
 
 Json projectionJson(const LightProjection& p)
 {
-    return {{"position", vector(p.position)},
-            {"right", vector(p.right)},
-            {"up", vector(p.up)},
-            {"forward", vector(p.forward)},
-            {"half_width", p.halfWidth},
-            {"depth_near", p.depthNear},
-            {"depth_far", p.depthFar},
-            {"resolution", p.resolution},
-            {"clip_from_world", rowsOf(clipFromWorld(p))}};
+    return {{"position", vector(p.position)}, {"right", vector(p.right)},   {"up", vector(p.up)},
+            {"forward", vector(p.forward)},   {"half_width", p.halfWidth},  {"depth_near", p.depthNear},
+            {"depth_far", p.depthFar},        {"resolution", p.resolution}, {"clip_from_world", rowsOf(clipFromWorld(p))}};
 }
 
 Json partitionJson(const CapturedLight& light)
@@ -200,7 +203,8 @@ Json toleranceJson(const Tolerance& t)
 
 Json bufferJson(const Buffer& b)
 {
-    Json json = {{"name", b.name}, {"pass", b.pass}, {"file", b.file}, {"dtype", nameOf(b.dtype)}, {"encoding", nameOf(b.encoding)}, {"shape", b.shape}, {"axes", b.axes}};
+    Json json = {{"name", b.name},   {"pass", b.pass}, {"file", b.file}, {"dtype", nameOf(b.dtype)}, {"encoding", nameOf(b.encoding)},
+                 {"shape", b.shape}, {"axes", b.axes}};
     if (!b.components.empty()) {
         json["components"] = Json::array();
         for (const std::string& component : b.components) json["components"].push_back(component.empty() ? Json(nullptr) : Json(component));
@@ -240,9 +244,14 @@ Json manifestJson(const Capture& c)
             {"cones", conesJson(c, plan)},
             {"gaussian", gaussianJson(plan)},
             {"constants", constantsJson()},
-            {"passes", listOf(c.passes, [](const CapturedPass& p) { return Json{{"name", p.name}, {"inputs", p.inputs}, {"sha256", p.sha256}}; })},
+            {"passes", listOf(c.passes,
+                              [](const CapturedPass& p) {
+                                  return Json{{"name", p.name}, {"inputs", p.inputs}, {"sha256", p.sha256}};
+                              })},
             {"buffers", listOf(c.buffers, bufferJson)},
-            {"history", listOf(c.history, [](const Blessing& b) { return Json{{"reason", b.reason}, {"version", b.version}, {"buffers", b.buffers}}; })}};
+            {"history", listOf(c.history, [](const Blessing& b) {
+                 return Json{{"reason", b.reason}, {"version", b.version}, {"buffers", b.buffers}};
+             })}};
 }
 
 }  // namespace lrsm

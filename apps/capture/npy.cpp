@@ -21,8 +21,8 @@ struct DtypeRow {
     std::string_view name, descr;
     std::size_t bytes;
 };
-constexpr std::array<DtypeRow, 8> kDtypes = {{{"u1", "|u1", 1}, {"u2", "<u2", 2}, {"u4", "<u4", 4}, {"u8", "<u8", 8},
-                                             {"i4", "<i4", 4}, {"f2", "<f2", 2}, {"f4", "<f4", 4}, {"f8", "<f8", 8}}};
+constexpr std::array<DtypeRow, 8> kDtypes = {
+    {{"u1", "|u1", 1}, {"u2", "<u2", 2}, {"u4", "<u4", 4}, {"u8", "<u8", 8}, {"i4", "<i4", 4}, {"f2", "<f2", 2}, {"f4", "<f4", 4}, {"f8", "<f8", 8}}};
 
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::size_t kPreamble = 10;  // magic, version, header length
@@ -129,9 +129,15 @@ NpyArray parseHeader(std::string_view text, const std::string& place)
 
 }  // namespace
 
-std::size_t sizeOf(Dtype dtype) { return kDtypes[static_cast<std::size_t>(dtype)].bytes; }
+std::size_t sizeOf(Dtype dtype)
+{
+    return kDtypes[static_cast<std::size_t>(dtype)].bytes;
+}
 
-std::string_view nameOf(Dtype dtype) { return kDtypes[static_cast<std::size_t>(dtype)].name; }
+std::string_view nameOf(Dtype dtype)
+{
+    return kDtypes[static_cast<std::size_t>(dtype)].name;
+}
 
 Dtype dtypeByName(std::string_view name, const std::string& place)
 {
@@ -156,8 +162,7 @@ std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape)
     std::string tuple;
     for (const std::size_t extent : shape) tuple += (tuple.empty() ? "" : ", ") + std::to_string(extent);
     if (shape.size() == 1) tuple += ',';  // Python's tuple of one
-    std::string text = "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) +
-                       "', 'fortran_order': False, 'shape': (" + tuple + "), }";
+    std::string text = "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) + "', 'fortran_order': False, 'shape': (" + tuple + "), }";
     // Blanks and a newline bring the data to a multiple of 64.
     text.append((kAlignment - (kPreamble + text.size() + 1) % kAlignment) % kAlignment, ' ');
     text += '\n';
@@ -186,8 +191,7 @@ NpyArray decodeNpy(std::span<const std::byte> file, const std::string& place)
 
     NpyArray array = parseHeader(std::string_view(text + kPreamble, headerSize), place);
     const std::size_t expected = elementCount(array.shape, place) * sizeOf(array.dtype), held = file.size() - kPreamble - headerSize;
-    if (held != expected)
-        throw InputError(place, "holds " + std::to_string(held) + " bytes of data where its shape needs " + std::to_string(expected));
+    if (held != expected) throw InputError(place, "holds " + std::to_string(held) + " bytes of data where its shape needs " + std::to_string(expected));
     const auto data = file.subspan(kPreamble + headerSize);
     array.bytes.assign(data.begin(), data.end());
     return array;

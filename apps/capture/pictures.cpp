@@ -13,9 +13,15 @@ namespace {
 constexpr int kThumbnailWidth = 256, kColumns = 4, kGap = 8;
 constexpr Rgb8 kBackground{48, 48, 48};
 
-bool isPicture(const Buffer& b) { return b.axes.size() >= 2 && b.axes[0] == "row" && b.axes[1] == "column" && b.dtype != Dtype::u4; }
+bool isPicture(const Buffer& b)
+{
+    return b.axes.size() >= 2 && b.axes[0] == "row" && b.axes[1] == "column" && b.dtype != Dtype::u4;
+}
 
-int channels(const Buffer& b) { return b.components.empty() ? 1 : static_cast<int>(b.components.size()); }
+int channels(const Buffer& b)
+{
+    return b.components.empty() ? 1 : static_cast<int>(b.components.size());
+}
 
 /// "Y", or the components' names as viewers know them.
 std::vector<std::string> channelNames(const Buffer& b)
@@ -43,7 +49,8 @@ void writeExr(OutputFolder& folder, const Capture& capture, const std::string& f
         image.layers.push_back(layerOf(b));
     }
     if (image.layers.empty()) return;
-    image.metadata = {{"lrsm:version", capture.version}, {"lrsm:command", "capture"}, {"lrsm:scene", capture.sceneName}, {"lrsm:scene_sha256", capture.sceneHash}};
+    image.metadata = {
+        {"lrsm:version", capture.version}, {"lrsm:command", "capture"}, {"lrsm:scene", capture.sceneName}, {"lrsm:scene_sha256", capture.sceneHash}};
     folder.write(file, encodeExr(image));
 }
 
@@ -52,7 +59,8 @@ std::vector<Buffer const*> sheetBuffers(const Capture& capture)
 {
     std::vector<Buffer const*> all;
     for (const Buffer& b : capture.buffers) {
-        const bool layered = b.axes.size() == 4 && b.axes[1] == "row", base = !b.name.ends_with(".alpha") && (b.name.find(".mip") == std::string::npos || b.name.ends_with(".mip0"));
+        const bool layered = b.axes.size() == 4 && b.axes[1] == "row",
+                   base = !b.name.ends_with(".alpha") && (b.name.find(".mip") == std::string::npos || b.name.ends_with(".mip0"));
         if (!b.bytes.empty() && b.pass != "tables" && (isPicture(b) || (layered && base))) all.push_back(&b);
     }
     return all;
@@ -74,14 +82,17 @@ Image<Rgb8> thumbnail(const Buffer& b, float stops)
     const int height = static_cast<int>(b.shape[rowAxis]), width = static_cast<int>(b.shape[rowAxis + 1]), count = channels(b);
     const int smallWidth = kThumbnailWidth, smallHeight = std::max(1, kThumbnailWidth * height / width);
     const auto value = [&](int x, int y, int c) {
-        return static_cast<float>(decodedValue(b, (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * static_cast<std::size_t>(count) + static_cast<std::size_t>(c)));
+        return static_cast<float>(
+            decodedValue(b, (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * static_cast<std::size_t>(count) +
+                                static_cast<std::size_t>(c)));
     };
     if (count < 3) {
         const Image<float> values = shrunk<float>(width, height, smallWidth, smallHeight, [&](int x, int y) { return value(x, y, 0); });
         const float most = values.texels.empty() ? 1.0f : *std::max_element(values.texels.begin(), values.texels.end());
         return falseColor(values, 0.0f, most);
     }
-    const Image<Vec3> values = shrunk<Vec3>(width, height, smallWidth, smallHeight, [&](int x, int y) { return Vec3(value(x, y, 0), value(x, y, 1), value(x, y, 2)); });
+    const Image<Vec3> values =
+        shrunk<Vec3>(width, height, smallWidth, smallHeight, [&](int x, int y) { return Vec3(value(x, y, 0), value(x, y, 1), value(x, y, 2)); });
     if (b.name.find("normal") != std::string::npos) return normalColor(values);
     const bool light = !b.unit.empty() && b.unit != "m";
     return tonemap(values, light ? (b.pass.starts_with("rsm") || b.pass.starts_with("lrsm") ? automaticExposure(values) : stops) : 0.0f);

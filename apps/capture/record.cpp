@@ -30,15 +30,19 @@ bool means(const std::string& asked, const std::string& pass)
     return a == b || (b.starts_with(a) && b.size() > a.size() && (a == "rsm" || a == "lrsm"));
 }
 
-bool given(const std::string& pass) { return pass == "scene" || pass == "tables"; }
+bool given(const std::string& pass)
+{
+    return pass == "scene" || pass == "tables";
+}
 
 void keepOnly(std::vector<Buffer>& buffers, const std::vector<std::string>& only)
 {
     if (only.empty()) return;
     for (const std::string& asked : only)
         if (std::none_of(buffers.begin(), buffers.end(), [&](const Buffer& b) { return means(asked, b.pass); }))
-            throw InputError("--only " + asked, "this frame has no such pass; they are voxelize, voxel-mips, rsm, lrsm (of all lights; rsm0 of one), "
-                                                "gbuffer, direct, cones, filter, composite");
+            throw InputError("--only " + asked,
+                             "this frame has no such pass; they are voxelize, voxel-mips, rsm, lrsm (of all lights; rsm0 of one), "
+                             "gbuffer, direct, cones, filter, composite");
     std::erase_if(buffers, [&](const Buffer& b) {
         return !given(b.pass) && std::none_of(only.begin(), only.end(), [&](const std::string& asked) { return means(asked, b.pass); });
     });
@@ -151,7 +155,8 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     };
     observer.cones = [&](const Gathered& gathered, const ConeRecord& cones) { toBuffers(gathered, cones, buffers); };
 
-    RenderOptions render{.width = options.width, .height = options.height, .hashPasses = true, .progress = options.progress, .replaceDiffuse = {}, .observer = &observer};
+    RenderOptions render{
+        .width = options.width, .height = options.height, .hashPasses = true, .progress = options.progress, .replaceDiffuse = {}, .observer = &observer};
     const Frame frame = renderFrame(scene, camera, needs, settings, render);
     toBuffers(frame.gbuffer, buffers);
     toBuffers(frame.direct, "direct.radiance", buffers);

@@ -12,7 +12,10 @@ enum Stream : std::uint32_t { hasUv0 = 1, hasUv1 = 2, hasTangents = 4, hasColors
 
 constexpr std::size_t kMeshColumns = 6;
 
-bool textured(const Material& m) { return m.baseColorTexture || m.metallicRoughnessTexture || m.normalTexture; }
+bool textured(const Material& m)
+{
+    return m.baseColorTexture || m.metallicRoughnessTexture || m.normalTexture;
+}
 
 /// One stream of all meshes, 0 where a mesh has none.
 template <class T>
@@ -71,7 +74,8 @@ void toBuffers(const Scene& scene, std::vector<Buffer>& buffers)
         const auto vertices = static_cast<std::uint32_t>(mesh.positions.size()), count = static_cast<std::uint32_t>(mesh.triangles.size());
         const std::uint32_t streams = (mesh.uv0.empty() ? 0u : hasUv0) | (mesh.uv1.empty() ? 0u : hasUv1) | (mesh.tangents.empty() ? 0u : hasTangents) |
                                       (mesh.colors.empty() ? 0u : hasColors);
-        for (const std::uint32_t value : {static_cast<std::uint32_t>(mesh.material), firstVertex, vertices, firstTriangle, count, streams}) meshes.push_back(value);
+        for (const std::uint32_t value : {static_cast<std::uint32_t>(mesh.material), firstVertex, vertices, firstTriangle, count, streams})
+            meshes.push_back(value);
         for (const auto& triangle : mesh.triangles) {
             for (const std::uint32_t corner : triangle) triangles.push_back(firstVertex + corner);
             meshOfTriangle.push_back(static_cast<std::uint32_t>(m));
@@ -126,7 +130,8 @@ Scene sceneFromCapture(const Capture& capture)
         for (std::size_t t = firstTriangle; t < firstTriangle + triangleCount; ++t) {
             std::array<std::uint32_t, 3> corners = triangles[t];
             for (std::uint32_t& corner : corners) {
-                if (corner < first || corner >= first + count) throw InputError("scene.triangles", "triangle " + std::to_string(t) + " points outside its mesh");
+                if (corner < first || corner >= first + count)
+                    throw InputError("scene.triangles", "triangle " + std::to_string(t) + " points outside its mesh");
                 corner -= static_cast<std::uint32_t>(first);
             }
             mesh.triangles.push_back(corners);

@@ -47,7 +47,8 @@ void addSchedules(CaptureTables& tables)
         counts.push_back(static_cast<std::uint32_t>(all[s]->steps.size()));
         float* row = values.data() + s * longest * kStepColumns;
         for (const MarchStep& step : all[s]->steps)
-            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f}) *row++ = value;
+            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f})
+                *row++ = value;
     }
     tables.schedules = tableOf("tables.schedules", Dtype::f4, {all.size(), longest, kStepColumns}, values);
     tables.steps = tableOf("tables.schedule_steps", Dtype::u4, {all.size()}, counts);
@@ -64,7 +65,8 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
     addSchedules(tables);
     if (const std::vector<float>& phi = tables.plan.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
     if (needs.specular)
-        tables.specularAlbedo = tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());
+        tables.specularAlbedo =
+            tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());
     return tables;
 }
 

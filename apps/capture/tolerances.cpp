@@ -12,19 +12,34 @@ constexpr double kEdges = 0.005;  // pixels and texels on silhouettes
 // What a snapped vertex moves: 1/256 pixel as seen, four times as much on a surface seen at a slant. Measured with a GPU-style rasterizer (docs/twin.md):
 // of three scenes of flat and round walls in three sizes each, 99.5 % of the texels are within 0.65 of it; a mesh of 200,000
 // triangles says what it does to normals and to <n.l>.
-double snapping(int pixels) { return 1.0 / (64.0 * pixels); }
+double snapping(int pixels)
+{
+    return 1.0 / (64.0 * pixels);
+}
 
-Tolerance exact(double outliers, std::string reason) { return {Tolerance::Kind::exact, 0.0, 0.0, outliers, 1.0, std::move(reason)}; }
+Tolerance exact(double outliers, std::string reason)
+{
+    return {Tolerance::Kind::exact, 0.0, 0.0, outliers, 1.0, std::move(reason)};
+}
 Tolerance ulp(double value, double outliers, double differing, std::string reason)
 {
     return {Tolerance::Kind::ulp, value, 0.0, outliers, differing, std::move(reason)};
 }
-Tolerance absolute(double value, double outliers, std::string reason) { return {Tolerance::Kind::absolute, value, 0.0, outliers, 1.0, std::move(reason)}; }
-Tolerance relative(double value, double outliers, std::string reason) { return {Tolerance::Kind::relative, value, 0.0, outliers, 1.0, std::move(reason)}; }
+Tolerance absolute(double value, double outliers, std::string reason)
+{
+    return {Tolerance::Kind::absolute, value, 0.0, outliers, 1.0, std::move(reason)};
+}
+Tolerance relative(double value, double outliers, std::string reason)
+{
+    return {Tolerance::Kind::relative, value, 0.0, outliers, 1.0, std::move(reason)};
+}
 
 }  // namespace
 
-Tolerance given() { return exact(0.0, "an input: not computed"); }
+Tolerance given()
+{
+    return exact(0.0, "an input: not computed");
+}
 
 Tolerance voxels()
 {
@@ -45,7 +60,8 @@ Tolerance mapRadiance(int resolution)
 
 Tolerance mapNormal(int resolution)
 {
-    return absolute(1e-3 + 16.0 * snapping(resolution), kEdges, "a step of half at 1 is 2^-11; 1/256 texel of snapping on curved surfaces; coverage flips on silhouettes");
+    return absolute(1e-3 + 16.0 * snapping(resolution), kEdges,
+                    "a step of half at 1 is 2^-11; 1/256 texel of snapping on curved surfaces; coverage flips on silhouettes");
 }
 
 Tolerance mapDepth(int resolution)
@@ -56,7 +72,8 @@ Tolerance mapDepth(int resolution)
 Tolerance layerHalf(bool half)
 {
     if (!half) return absolute(1e-5, 0.0, "the order of four additions");
-    return ulp(1, 0.0, 0.25, "four additions in another order may cross a step of half; more than a quarter of the texels: the rounding mode differs (half_rounding)");
+    return ulp(1, 0.0, 0.25,
+               "four additions in another order may cross a step of half; more than a quarter of the texels: the rounding mode differs (half_rounding)");
 }
 
 Tolerance layerDepth(bool unorm, int level)
@@ -70,7 +87,8 @@ Tolerance layerDepth(bool unorm, int level)
 
 Tolerance length(double sceneDiagonal, int height)
 {
-    return absolute(sceneDiagonal * snapping(height), kEdges, "1/256 pixel of snapping on a slanted surface, for a picture as high as the scene; silhouettes flip");
+    return absolute(sceneDiagonal * snapping(height), kEdges,
+                    "1/256 pixel of snapping on a slanted surface, for a picture as high as the scene; silhouettes flip");
 }
 
 Tolerance surfaceNormal(int height)
@@ -79,24 +97,45 @@ Tolerance surfaceNormal(int height)
                     "8 bits of sampler fraction in normal maps; 1/256 pixel of snapping on curved surfaces; silhouettes flip");
 }
 
-Tolerance surface() { return absolute(2e-3, kEdges, "interpolation, and 8 bits of sampler fraction in textures; silhouettes flip"); }
+Tolerance surface()
+{
+    return absolute(2e-3, kEdges, "interpolation, and 8 bits of sampler fraction in textures; silhouettes flip");
+}
 
-Tolerance objectId() { return exact(kEdges, "silhouettes flip where snapping differs"); }
+Tolerance objectId()
+{
+    return exact(kEdges, "silhouettes flip where snapping differs");
+}
 
-Tolerance direct() { return relative(1e-3, kEdges, "float32 in another order; a shadow's edge flips where its depth comparison is a tie"); }
+Tolerance direct()
+{
+    return relative(1e-3, kEdges, "float32 in another order; a shadow's edge flips where its depth comparison is a tie");
+}
 
 Tolerance cones()
 {
     return relative(2e-2, 0.01, "sampler fractions of 8 bits, log2 to a few ULP; a cone that ends one step earlier or later is an outlier");
 }
 
-Tolerance coneOpacity() { return absolute(1e-2, 0.01, "as the cones' radiance"); }
+Tolerance coneOpacity()
+{
+    return absolute(1e-2, 0.01, "as the cones' radiance");
+}
 
-Tolerance filter() { return relative(1e-4, kEdges, "the order of 25 additions; a neighbour at the limit of \"same surface\" is an outlier"); }
+Tolerance filter()
+{
+    return relative(1e-4, kEdges, "the order of 25 additions; a neighbour at the limit of \"same surface\" is an outlier");
+}
 
-Tolerance product() { return relative(1e-5, 0.0, "float32 in another order"); }
+Tolerance product()
+{
+    return relative(1e-5, 0.0, "float32 in another order");
+}
 
-Tolerance specularPart() { return relative(2e-3, 0.0, "table lookup by a sampler's 8-bit fractions"); }
+Tolerance specularPart()
+{
+    return relative(2e-3, 0.0, "table lookup by a sampler's 8-bit fractions");
+}
 
 void setFloor(Buffer& buffer)
 {

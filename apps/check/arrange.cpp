@@ -30,10 +30,10 @@ std::vector<std::size_t> withoutOnes(std::vector<std::size_t> shape)
 
 /// What the file's elements are laid out along.
 struct Layout {
-    std::vector<std::string> axes;      ///< golden's, in the golden's order; the component's last when there is one
-    std::vector<std::size_t> extents;   ///< golden's
-    std::vector<std::size_t> strides;   ///< in the file, in elements
-    std::size_t channels = 1;           ///< in the file
+    std::vector<std::string> axes;     ///< golden's, in the golden's order; the component's last when there is one
+    std::vector<std::size_t> extents;  ///< golden's
+    std::vector<std::size_t> strides;  ///< in the file, in elements
+    std::size_t channels = 1;          ///< in the file
 };
 
 /// Components up to the last that is compared: a file may leave out the rest.
@@ -46,8 +46,8 @@ std::size_t neededComponents(const Buffer& golden)
 
 [[noreturn]] void refuseShape(const Buffer& golden, const std::vector<std::size_t>& expected, const GivenArray& array, const std::string& place)
 {
-    throw InputError(place, "is " + shapeText(array.shape) + " where " + golden.name + " is " + shapeText(expected) +
-                                "; was it made at the golden's size and settings?");
+    throw InputError(
+        place, "is " + shapeText(array.shape) + " where " + golden.name + " is " + shapeText(expected) + "; was it made at the golden's size and settings?");
 }
 
 /// Strides of the golden's axes in the file. Axes of extent 1 may be left out or added; more channels than the golden's are passed over.
@@ -91,8 +91,7 @@ Layout layOut(const Buffer& golden, const std::vector<std::size_t>& extents, con
 /// Index in the file of every element of the golden (of `extents`); kAbsent for an unused component that is not there.
 class Source {
   public:
-    Source(const Buffer& golden, const Layout& layout, const Arrangement& how, const std::string& place)
-        : golden_(golden), layout_(layout), how_(how)
+    Source(const Buffer& golden, const Layout& layout, const Arrangement& how, const std::string& place) : golden_(golden), layout_(layout), how_(how)
     {
         flipped_.assign(layout.extents.size(), false);
         for (const std::string& name : how.flip) {
@@ -101,10 +100,12 @@ class Source {
             flipped_[static_cast<std::size_t>(found - layout.axes.begin())] = true;
         }
         if (!how.layers.empty() && (how.layers.size() != layout.extents[0] || *std::max_element(how.layers.begin(), how.layers.end()) >= layout.extents[0]))
-            throw InputError(place, "\"layers\" must hold, for each of the " + std::to_string(layout.extents[0]) + " layers of " + golden.name + ", its place in the file");
+            throw InputError(
+                place, "\"layers\" must hold, for each of the " + std::to_string(layout.extents[0]) + " layers of " + golden.name + ", its place in the file");
         const std::size_t components = std::max<std::size_t>(golden.components.size(), 1);
         if (!how.channels.empty() && (how.channels.size() > components || *std::max_element(how.channels.begin(), how.channels.end()) >= layout.channels))
-            throw InputError(place, "\"channels\" must name at most " + std::to_string(components) + " of the file's " + std::to_string(layout.channels) + " channels");
+            throw InputError(
+                place, "\"channels\" must name at most " + std::to_string(components) + " of the file's " + std::to_string(layout.channels) + " channels");
     }
 
     std::size_t operator()(std::size_t element) const
@@ -149,18 +150,21 @@ void storeValue(Buffer& buffer, std::size_t element, double value, HalfRounding 
     };
     const auto narrow = static_cast<float>(value);
     switch (buffer.dtype) {
-        case Dtype::u1: return put(unorm ? unorm8FromFloat(narrow) : static_cast<std::uint8_t>(whole(255.0)));
-        case Dtype::u2: return put(unorm ? unorm16FromFloat(narrow) : static_cast<std::uint16_t>(whole(65535.0)));
-        case Dtype::u4: return put(static_cast<std::uint32_t>(whole(4294967295.0)));
-        case Dtype::u8: return put(static_cast<std::uint64_t>(whole(0x1p53)));
-        case Dtype::i4: return put(static_cast<std::int32_t>(whole(2147483647.0)));
-        case Dtype::f2: return put(halfFromFloat(narrow, rounding));
-        case Dtype::f4: return put(narrow);
-        case Dtype::f8: return put(value);
+    case Dtype::u1: return put(unorm ? unorm8FromFloat(narrow) : static_cast<std::uint8_t>(whole(255.0)));
+    case Dtype::u2: return put(unorm ? unorm16FromFloat(narrow) : static_cast<std::uint16_t>(whole(65535.0)));
+    case Dtype::u4: return put(static_cast<std::uint32_t>(whole(4294967295.0)));
+    case Dtype::u8: return put(static_cast<std::uint64_t>(whole(0x1p53)));
+    case Dtype::i4: return put(static_cast<std::int32_t>(whole(2147483647.0)));
+    case Dtype::f2: return put(halfFromFloat(narrow, rounding));
+    case Dtype::f4: return put(narrow);
+    case Dtype::f8: return put(value);
     }
 }
 
-bool isFloat(Dtype dtype) { return dtype == Dtype::f2 || dtype == Dtype::f4 || dtype == Dtype::f8; }
+bool isFloat(Dtype dtype)
+{
+    return dtype == Dtype::f2 || dtype == Dtype::f4 || dtype == Dtype::f8;
+}
 
 /// May these elements stand for the golden's, and as what?
 Encoding encodingFor(const Buffer& golden, const GivenArray& array, const Arrangement& how, const std::string& place)

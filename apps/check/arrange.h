@@ -19,11 +19,11 @@ struct GivenArray {
 
 /// What a map may say of an array; the axes' names are the golden's.
 struct Arrangement {
-    std::vector<std::string> axes;       ///< their order in the file; empty: the golden's
-    std::vector<std::string> flip;       ///< axes that run the other way
-    std::vector<std::size_t> layers;     ///< where in the file each layer of the golden is; empty: in place
-    std::vector<std::size_t> channels;   ///< where in the file each component of the golden is; empty: in place
-    double scale = 1.0, offset = 0.0;    ///< value = stored * scale + offset
+    std::vector<std::string> axes;      ///< their order in the file; empty: the golden's
+    std::vector<std::string> flip;      ///< axes that run the other way
+    std::vector<std::size_t> layers;    ///< where in the file each layer of the golden is; empty: in place
+    std::vector<std::size_t> channels;  ///< where in the file each component of the golden is; empty: in place
+    double scale = 1.0, offset = 0.0;   ///< value = stored * scale + offset
     std::optional<Encoding> encoding;
     bool operator==(const Arrangement&) const = default;
 };

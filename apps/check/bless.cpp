@@ -9,18 +9,22 @@ namespace lrsm {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) { throw InputError("--bless", why + "; nothing was changed"); }
+[[noreturn]] void refuse(const std::string& why)
+{
+    throw InputError("--bless", why + "; nothing was changed");
+}
 
 void refuseOtherFrames(const Capture& golden, const Capture& candidate)
 {
     if (golden.sceneHash != candidate.sceneHash)
-        refuse("the candidate is of another scene: " + candidate.sceneName + " (" + candidate.sceneHash.substr(0, 12) + "), the golden of " + golden.sceneName + " (" +
-               golden.sceneHash.substr(0, 12) + ")");
+        refuse("the candidate is of another scene: " + candidate.sceneName + " (" + candidate.sceneHash.substr(0, 12) + "), the golden of " + golden.sceneName +
+               " (" + golden.sceneHash.substr(0, 12) + ")");
     if (golden.width != candidate.width || golden.height != candidate.height)
-        refuse("the candidate is " + std::to_string(candidate.width) + "x" + std::to_string(candidate.height) + ", the golden " + std::to_string(golden.width) + "x" +
-               std::to_string(golden.height));
+        refuse("the candidate is " + std::to_string(candidate.width) + "x" + std::to_string(candidate.height) + ", the golden " + std::to_string(golden.width) +
+               "x" + std::to_string(golden.height));
     std::string settings;
-    for (const SettingDifference& d : differences(golden.settings, candidate.settings)) settings += (settings.empty() ? "" : ", ") + d.key + "=" + d.b + " (golden " + d.a + ")";
+    for (const SettingDifference& d : differences(golden.settings, candidate.settings))
+        settings += (settings.empty() ? "" : ", ") + d.key + "=" + d.b + " (golden " + d.a + ")";
     if (!settings.empty()) refuse("the candidate has other settings: " + settings);
 }
 

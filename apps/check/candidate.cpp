@@ -4,8 +4,8 @@
 #include "apps/check/compare.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/settings/settings_table.h"
 #include "core/imageio/image_io.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cstring>
@@ -35,14 +35,14 @@ struct ChannelType {
 ChannelType channelTypeOf(DxgiFormat format)
 {
     switch (format) {
-        case DxgiFormat::R32G32B32A32_FLOAT:
-        case DxgiFormat::R32_FLOAT: return {Dtype::f4, Encoding::number};
-        case DxgiFormat::R16G16B16A16_FLOAT:
-        case DxgiFormat::R16_FLOAT: return {Dtype::f2, Encoding::number};
-        case DxgiFormat::R16G16B16A16_UNORM:
-        case DxgiFormat::R16_UNORM: return {Dtype::u2, Encoding::unorm};
-        case DxgiFormat::R32_UINT: return {Dtype::u4, Encoding::number};
-        default: return {Dtype::u1, Encoding::unorm};
+    case DxgiFormat::R32G32B32A32_FLOAT:
+    case DxgiFormat::R32_FLOAT: return {Dtype::f4, Encoding::number};
+    case DxgiFormat::R16G16B16A16_FLOAT:
+    case DxgiFormat::R16_FLOAT: return {Dtype::f2, Encoding::number};
+    case DxgiFormat::R16G16B16A16_UNORM:
+    case DxgiFormat::R16_UNORM: return {Dtype::u2, Encoding::unorm};
+    case DxgiFormat::R32_UINT: return {Dtype::u4, Encoding::number};
+    default: return {Dtype::u1, Encoding::unorm};
     }
 }
 
@@ -310,8 +310,8 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
     compareManifests(folder, golden, candidate.notes);
     for (const Buffer& buffer : golden.buffers) {
         const bool wanted = options.passes.empty() || std::any_of(options.passes.begin(), options.passes.end(), [&](const std::string& pass) {
-            return buffer.pass == pass || buffer.pass.starts_with(pass + " ");
-        });
+                                return buffer.pass == pass || buffer.pass.starts_with(pass + " ");
+                            });
         if (!wanted) continue;
         if (std::optional<CandidateBuffer> found = reader.read(buffer)) candidate.buffers.push_back(std::move(*found));
     }
@@ -327,8 +327,10 @@ Capture layOver(const Capture& golden, const Candidate& candidate)
     Buffer* rows = findIn(mixed.buffers, "voxel.bits");
     Buffer* bricks = findIn(mixed.buffers, "voxel.bricks");
     if (rows && bricks) {
-        if (candidate.find("voxel.bits")) repack(*rows, *bricks);
-        else if (candidate.find("voxel.bricks")) repack(*bricks, *rows);
+        if (candidate.find("voxel.bits"))
+            repack(*rows, *bricks);
+        else if (candidate.find("voxel.bricks"))
+            repack(*bricks, *rows);
     }
     return mixed;
 }

@@ -22,8 +22,8 @@ struct Candidate {
 };
 
 struct CandidateOptions {
-    std::string map;                       ///< a JSON file that says where buffers are; empty: by their names alone
-    std::vector<std::string> passes;       ///< whose buffers are read; empty: all
+    std::string map;                  ///< a JSON file that says where buffers are; empty: by their names alone
+    std::vector<std::string> passes;  ///< whose buffers are read; empty: all
 };
 
 /// Looks for every buffer of `golden` (whose buffers must have their bytes' descriptions, not the bytes) in the folder: as the map says, else as

@@ -64,18 +64,30 @@ MapEntry entryFrom(const std::string& pattern, const MapJson& json, const std::s
     if (!json.is_object()) throw InputError(place, "must be a file's name or an object with \"file\"");
     for (const auto& [key, value] : json.items()) {
         const std::string at = place + "." + key;
-        if (key == "file") entry.file = valueFrom<std::string>(value, "a file's name", at);
-        else if (key == "layer") entry.layer = valueFrom<std::string>(value, "the name of an EXR's layer", at);
-        else if (key == "mip") entry.mip = valueFrom<int>(value, "a mip's number", at);
-        else if (key == "dtype") entry.dtype = std::string(nameOf(dtypeByName(valueFrom<std::string>(value, "an element type", at), at)));
-        else if (key == "axes") entry.how.axes = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
-        else if (key == "flip") entry.how.flip = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
-        else if (key == "layers") entry.how.layers = layersFrom(value, at);
-        else if (key == "channels") entry.how.channels = channelsFrom(value, at);
-        else if (key == "scale") entry.how.scale = valueFrom<double>(value, "a number", at);
-        else if (key == "offset") entry.how.offset = valueFrom<double>(value, "a number", at);
-        else if (key == "encoding") entry.how.encoding = encodingByName(valueFrom<std::string>(value, "number, unorm or bits", at), at);
-        else throw InputError(at, "is no key of a map; they are file, layer, mip, dtype, axes, flip, layers, channels, scale, offset, encoding");
+        if (key == "file")
+            entry.file = valueFrom<std::string>(value, "a file's name", at);
+        else if (key == "layer")
+            entry.layer = valueFrom<std::string>(value, "the name of an EXR's layer", at);
+        else if (key == "mip")
+            entry.mip = valueFrom<int>(value, "a mip's number", at);
+        else if (key == "dtype")
+            entry.dtype = std::string(nameOf(dtypeByName(valueFrom<std::string>(value, "an element type", at), at)));
+        else if (key == "axes")
+            entry.how.axes = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
+        else if (key == "flip")
+            entry.how.flip = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
+        else if (key == "layers")
+            entry.how.layers = layersFrom(value, at);
+        else if (key == "channels")
+            entry.how.channels = channelsFrom(value, at);
+        else if (key == "scale")
+            entry.how.scale = valueFrom<double>(value, "a number", at);
+        else if (key == "offset")
+            entry.how.offset = valueFrom<double>(value, "a number", at);
+        else if (key == "encoding")
+            entry.how.encoding = encodingByName(valueFrom<std::string>(value, "number, unorm or bits", at), at);
+        else
+            throw InputError(at, "is no key of a map; they are file, layer, mip, dtype, axes, flip, layers, channels, scale, offset, encoding");
     }
     if (entry.file.empty()) throw InputError(place, "has no \"file\"");
     return entry;

@@ -12,7 +12,10 @@ namespace lrsm {
 
 namespace {
 
-bool isGiven(const Buffer& buffer) { return buffer.pass == "scene" || buffer.pass == "tables"; }
+bool isGiven(const Buffer& buffer)
+{
+    return buffer.pass == "scene" || buffer.pass == "tables";
+}
 
 std::size_t passIndex(const Capture& golden, const std::string& pass)
 {
@@ -145,10 +148,10 @@ std::string valueText(double value)
 std::string_view nameOf(Verdict verdict)
 {
     switch (verdict) {
-        case Verdict::ok: return "ok";
-        case Verdict::wrong: return "WRONG";
-        case Verdict::inherits: return "inherits";
-        case Verdict::missing: break;
+    case Verdict::ok: return "ok";
+    case Verdict::wrong: return "WRONG";
+    case Verdict::inherits: return "inherits";
+    case Verdict::missing: break;
     }
     return "not in candidate";
 }
@@ -170,16 +173,15 @@ std::string CheckReport::summary() const
     if (!wrong) {
         std::string text = std::to_string(count(Verdict::ok) + count(Verdict::inherits)) + " buffers are within their tolerances";
         if (const std::size_t missing = count(Verdict::missing)) text += "; " + std::to_string(missing) + " are not in the candidate";
-        if (const std::size_t inherits = count(Verdict::inherits))
-            text += "; " + std::to_string(inherits) + " differ from the golden as their inputs do";
+        if (const std::size_t inherits = count(Verdict::inherits)) text += "; " + std::to_string(inherits) + " differ from the golden as their inputs do";
         return text;
     }
     const Buffer& golden = wrong->expected();
     const BufferComparison& c = wrong->comparison();
     std::string text = "first difference: pass \"" + golden.pass + "\", " + golden.name;
     if (c.first) {
-        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + valueText(c.first->golden) + ", candidate " +
-                valueText(c.first->candidate);
+        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + valueText(c.first->golden) +
+                ", candidate " + valueText(c.first->candidate);
         if (golden.tolerance.kind != Tolerance::Kind::exact && !std::isnan(c.first->size)) text += ", off by " + sizeText(golden, c.first->size);
     }
     text += " (tolerance " + toleranceText(golden.tolerance) + "); " + std::to_string(c.differing) + " of " + std::to_string(c.elements) + " differ, " +

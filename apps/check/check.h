@@ -9,7 +9,7 @@
 namespace lrsm {
 
 enum class Verdict {
-    ok,        ///< within the tolerance of the golden; with fromGolden: of what our pass makes of the candidate's own inputs
+    ok,  ///< within the tolerance of the golden; with fromGolden: of what our pass makes of the candidate's own inputs
     wrong,
     inherits,  ///< differs from the golden, but is what our pass makes of the candidate's inputs: look upstream
     missing,   ///< not in the candidate
@@ -23,9 +23,9 @@ struct CheckedBuffer {
     std::optional<BufferComparison> againstRerun;  ///< fromGolden, where the pass could be run anew
     Buffer rerun;                                  ///< what it made; no bytes without
     Verdict verdict = Verdict::missing;
-    std::string note;                              ///< why it could not be run anew, say; may be empty
-    std::vector<std::string> hints;                ///< what the error looks like, surest first
-    std::string where;                             ///< what the differing elements have in common; may be empty
+    std::string note;                ///< why it could not be run anew, say; may be empty
+    std::vector<std::string> hints;  ///< what the error looks like, surest first
+    std::string where;               ///< what the differing elements have in common; may be empty
 
     /// What the verdict was made of: the pass run anew; the golden where there is no such thing, or where only the golden is matched.
     bool judgedByRerun() const { return againstRerun && (againstRerun->holds || !againstGolden.holds); }

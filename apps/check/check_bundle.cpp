@@ -1,8 +1,8 @@
 // The folder of `lrsm check`: what was expected, what came, and the difference, as arrays and pictures, and the page that shows them.
 #include "apps/check/check_report.h"
-#include "apps/common/describe.h"
 #include "apps/check/rerun.h"
 #include "apps/check/texel_inputs.h"
+#include "apps/common/describe.h"
 #include "core/imageio/display.h"
 #include "core/imageio/image_io.h"
 #include "core/report/html.h"
@@ -15,14 +15,14 @@ namespace lrsm {
 
 namespace {
 
-constexpr std::size_t kShownInPage = 12;   ///< wrong buffers with pictures; all have files
-constexpr int kSmallestSide = 256;         ///< smaller pictures are magnified
+constexpr std::size_t kShownInPage = 12;  ///< wrong buffers with pictures; all have files
+constexpr int kSmallestSide = 256;        ///< smaller pictures are magnified
 constexpr std::size_t kMostPixels = 1 << 22;
 
 /// The two axes that make the picture, and where the others stand.
 struct Slice {
-    std::size_t row = 0, column = 0;           ///< axes
-    std::vector<std::size_t> at;               ///< indices of the first difference
+    std::size_t row = 0, column = 0;  ///< axes
+    std::vector<std::size_t> at;      ///< indices of the first difference
     int width = 0, height = 0;
     std::string title;
 };
@@ -153,14 +153,16 @@ std::string sectionOf(const CheckedBuffer& b, const Capture& inputs, const std::
 {
     const Buffer& expected = b.expected();
     const BufferComparison& c = b.comparison();
-    std::string html = headingHtml(expected.pass + ": " + expected.name) + paragraphHtml(expected.meaning + (expected.unit.empty() ? "" : ", " + expected.unit));
+    std::string html =
+        headingHtml(expected.pass + ": " + expected.name) + paragraphHtml(expected.meaning + (expected.unit.empty() ? "" : ", " + expected.unit));
     html += paragraphHtml(c.why + ". Tolerance: " + toleranceText(expected.tolerance) + " (" + expected.tolerance.reason + ").");
     if (!b.where.empty()) html += paragraphHtml("Where: " + b.where + ".");
     html += listHtml(b.hints);
     if (!b.note.empty()) html += paragraphHtml("Note: " + b.note + ".");
     if (!pictures.empty()) {
         html += "<div class=\"row\">";
-        for (const ReportPicture& picture : pictures) html += "<figure>" + pictureHtml(picture) + "<figcaption>" + htmlEscaped(picture.title) + "</figcaption></figure>";
+        for (const ReportPicture& picture : pictures)
+            html += "<figure>" + pictureHtml(picture) + "<figcaption>" + htmlEscaped(picture.title) + "</figcaption></figure>";
         html += "</div>\n";
     }
     if (c.first) {
@@ -172,8 +174,9 @@ std::string sectionOf(const CheckedBuffer& b, const Capture& inputs, const std::
     return html;
 }
 
-constexpr std::string_view kBundleStyle = ".row { display: flex; flex-wrap: wrap; gap: 1em } .row img { max-width: 400px; image-rendering: pixelated } "
-                                          "figcaption { text-align: center } td { text-align: left }";
+constexpr std::string_view kBundleStyle =
+    ".row { display: flex; flex-wrap: wrap; gap: 1em } .row img { max-width: 400px; image-rendering: pixelated } "
+    "figcaption { text-align: center } td { text-align: left }";
 
 }  // namespace
 
@@ -192,7 +195,8 @@ void writeCheck(OutputFolder& folder, const CheckReport& report, const Capture& 
             for (const TexelInput& input : inputsOf(inputs, b.expected(), b.comparison().first->element)) entry["first_inputs"][input.what] = input.value;
         if (shownInPage++ < kShownInPage) sections += sectionOf(b, inputs, pictures);
     }
-    if (shownInPage > kShownInPage) sections += paragraphHtml(std::to_string(shownInPage - kShownInPage) + " more wrong buffers: see their files and check.json.");
+    if (shownInPage > kShownInPage)
+        sections += paragraphHtml(std::to_string(shownInPage - kShownInPage) + " more wrong buffers: see their files and check.json.");
     page.bodyHtml += sections + headingHtml("All buffers") + preformattedHtml(checkTable(report));
     folder.write("check.json", jsonText(json));
     folder.write("report.html", htmlPage(page));

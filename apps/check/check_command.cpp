@@ -1,11 +1,11 @@
+#include "apps/capture/pictures.h"
+#include "apps/check/bless.h"
 #include "apps/check/check_report.h"
+#include "apps/check/texel_inputs.h"
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/common/progress.h"
-#include "apps/check/bless.h"
-#include "apps/capture/pictures.h"
-#include "apps/check/texel_inputs.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 
@@ -65,8 +65,9 @@ void printInputs(const CheckReport& report, const Capture& inputs)
     const CheckedBuffer* wrong = report.firstWrong();
     if (!wrong || !wrong->comparison().first) return;
     const std::size_t element = wrong->comparison().first->element;
-    std::cout << "\n" << wrong->golden->name << ", " << placeText(*wrong->golden, element) << "\n  expected   " << texelText(wrong->expected(), element) << "\n  candidate  "
-              << texelText(wrong->candidate->buffer, element) << "\n  made from\n";
+    std::cout << "\n"
+              << wrong->golden->name << ", " << placeText(*wrong->golden, element) << "\n  expected   " << texelText(wrong->expected(), element)
+              << "\n  candidate  " << texelText(wrong->candidate->buffer, element) << "\n  made from\n";
     for (const TexelInput& input : inputsOf(inputs, wrong->expected(), element)) std::cout << "    " << input.what << ": " << input.value << "\n";
 }
 
@@ -81,7 +82,8 @@ void print(const CheckArguments& options, const CheckReport& report, const Captu
     for (const std::string& note : report.notes) std::cout << "note: " << note << "\n";
     std::cout << "\n" << checkTable(report);
     printInputs(report, inputs);
-    if (!report.holds() && !options.fromGolden) std::cout << "\nWhat follows a wrong pass is wrong by its inputs: --from-golden judges each pass by the candidate's own.\n";
+    if (!report.holds() && !options.fromGolden)
+        std::cout << "\nWhat follows a wrong pass is wrong by its inputs: --from-golden judges each pass by the candidate's own.\n";
 }
 
 int runCheck(const CheckArguments& options)
@@ -117,7 +119,9 @@ int runCheck(const CheckArguments& options)
         OutputFolder folder(options.output);
         writeCheck(folder, report, inputs, title);
         folder.commit();
-        if (!options.quiet && !options.json) std::cout << "\n" << options.output << ": report.html, check.json" << (report.holds() ? "" : ", expected, actual and difference of what is wrong") << "\n";
+        if (!options.quiet && !options.json)
+            std::cout << "\n"
+                      << options.output << ": report.html, check.json" << (report.holds() ? "" : ", expected, actual and difference of what is wrong") << "\n";
     }
     return report.holds() ? 0 : 1;
 }
@@ -126,7 +130,8 @@ int runCheck(const CheckArguments& options)
 
 Command addCheck(CLI::App& program)
 {
-    CLI::App* parser = program.add_subcommand("check", "Hold another implementation's buffers against a golden capture, pass by pass (docs/check.md); 1 if one is wrong");
+    CLI::App* parser =
+        program.add_subcommand("check", "Hold another implementation's buffers against a golden capture, pass by pass (docs/check.md); 1 if one is wrong");
     const auto options = std::make_shared<CheckArguments>();
     addRunOptions(*parser, *options);
     parser->add_option("GOLDEN", options->golden, "folder that `lrsm capture` wrote")->required();
@@ -135,7 +140,9 @@ Command addCheck(CLI::App& program)
     parser->add_option("--map", options->map, "JSON that says where the candidate's buffers are, and how they are stored");
     parser->add_flag("--from-golden", options->fromGolden, "judge each pass by what ours makes of the candidate's own inputs");
     parser->add_flag("--exact", options->exact, "every buffer must have the golden's very bits, whatever its tolerance: for captures by this program");
-    parser->add_option("--only", options->only, "passes to compare: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")->delimiter(',')->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes to compare: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     parser->add_option("--junit", options->junit, "file for a JUnit report");
     parser->add_flag("--no-hints", options->noHints, "compare only: do not look for what the error may be");
     parser->add_flag("--bless", options->bless, "make the candidate, a whole capture of the same frame, the golden");

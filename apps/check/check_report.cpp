@@ -27,14 +27,21 @@ std::string mipStem(const std::string& name)
     return at == std::string::npos ? std::string() : name.substr(0, at + 4);
 }
 
-std::string mipNumber(const std::string& name) { return name.substr(name.rfind("mip") + 3); }
+std::string mipNumber(const std::string& name)
+{
+    return name.substr(name.rfind("mip") + 3);
+}
 
-bool quiet(const CheckedBuffer& b) { return b.verdict == Verdict::missing || (b.verdict == Verdict::ok && b.comparison().differing == 0); }
+bool quiet(const CheckedBuffer& b)
+{
+    return b.verdict == Verdict::missing || (b.verdict == Verdict::ok && b.comparison().differing == 0);
+}
 
 /// Mips of one texture that say the same.
 bool joins(const CheckedBuffer& a, const CheckedBuffer& b)
 {
-    return quiet(a) && quiet(b) && a.verdict == b.verdict && a.note == b.note && !mipStem(a.golden->name).empty() && mipStem(a.golden->name) == mipStem(b.golden->name);
+    return quiet(a) && quiet(b) && a.verdict == b.verdict && a.note == b.note && !mipStem(a.golden->name).empty() &&
+           mipStem(a.golden->name) == mipStem(b.golden->name);
 }
 
 std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
@@ -43,8 +50,14 @@ std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
     const std::string mark = b.verdict == Verdict::wrong ? "!" : "";
     if (b.verdict == Verdict::missing) return {b.golden->pass, name, "", "", "", "", "", std::string(nameOf(b.verdict))};
     const std::string where = c.worst ? placeText(*b.golden, c.worst->element) : "";
-    return {mark + b.golden->pass, name, std::to_string(c.elements), shortShare(c.differing, c.live), shortShare(c.outside, c.live),
-            c.worst ? sizeText(*b.golden, c.worst->size) : "0", where, std::string(nameOf(b.verdict))};
+    return {mark + b.golden->pass,
+            name,
+            std::to_string(c.elements),
+            shortShare(c.differing, c.live),
+            shortShare(c.outside, c.live),
+            c.worst ? sizeText(*b.golden, c.worst->size) : "0",
+            where,
+            std::string(nameOf(b.verdict))};
 }
 
 ReportTable tableOf(const CheckReport& report)
@@ -76,8 +89,10 @@ Json differenceJson(const Buffer& buffer, const ElementDifference& d)
     const std::vector<std::string> names = axisNamesOf(buffer);
     for (std::size_t axis = 0; axis < indices.size(); ++axis) {
         const bool component = axis + 1 == indices.size() && !buffer.components.empty();
-        if (component) at[names[axis]] = buffer.components[indices[axis]];
-        else at[names[axis]] = indices[axis];
+        if (component)
+            at[names[axis]] = buffer.components[indices[axis]];
+        else
+            at[names[axis]] = indices[axis];
     }
     const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(exactNumber(value)); };
     return {{"at", at}, {"expected", number(d.golden)}, {"candidate", number(d.candidate)}, {"size", number(d.size)}, {"size_text", sizeText(buffer, d.size)}};
@@ -95,10 +110,10 @@ Json comparisonJson(const Buffer& buffer, const BufferComparison& c)
 std::string_view verdictKey(Verdict verdict)
 {
     switch (verdict) {
-        case Verdict::ok: return "ok";
-        case Verdict::wrong: return "wrong";
-        case Verdict::inherits: return "inherits";
-        case Verdict::missing: break;
+    case Verdict::ok: return "ok";
+    case Verdict::wrong: return "wrong";
+    case Verdict::inherits: return "inherits";
+    case Verdict::missing: break;
     }
     return "not_in_candidate";
 }
@@ -106,7 +121,8 @@ std::string_view verdictKey(Verdict verdict)
 /// XML 1.0 has no place for control characters, escaped or not.
 std::string xmlText(std::string text)
 {
-    std::replace_if(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; }, '?');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; }, '?');
     // Bytes that are no UTF-8 (file names may hold any) become U+FFFD, as in JSON.
     const std::string valid = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
     return htmlEscaped(Json::parse(valid).get<std::string>());
@@ -117,8 +133,8 @@ std::string failureText(const CheckedBuffer& b)
     const BufferComparison& c = b.comparison();
     std::string text = c.why + "; tolerance " + toleranceText(b.golden->tolerance);
     if (c.first)
-        text += "\nfirst: " + placeText(*b.golden, c.first->element) + ": expected " + exactNumber(c.first->golden) + ", candidate " + exactNumber(c.first->candidate) +
-                " (" + sizeText(*b.golden, c.first->size) + ")";
+        text += "\nfirst: " + placeText(*b.golden, c.first->element) + ": expected " + exactNumber(c.first->golden) + ", candidate " +
+                exactNumber(c.first->candidate) + " (" + sizeText(*b.golden, c.first->size) + ")";
     if (!b.where.empty()) text += "\nwhere: " + b.where;
     for (const std::string& hint : b.hints) text += "\nhint: " + hint;
     if (!b.note.empty()) text += "\nnote: " + b.note;
@@ -154,7 +170,8 @@ Json checkJson(const CheckReport& report)
 {
     Json json = {{"summary", report.summary()}, {"holds", report.holds()}, {"notes", report.notes}, {"buffers", Json::array()}};
     for (const CheckedBuffer& b : report.buffers) {
-        Json entry = {{"pass", b.golden->pass}, {"name", b.golden->name}, {"verdict", verdictKey(b.verdict)}, {"tolerance", toleranceText(b.golden->tolerance)}};
+        Json entry = {
+            {"pass", b.golden->pass}, {"name", b.golden->name}, {"verdict", verdictKey(b.verdict)}, {"tolerance", toleranceText(b.golden->tolerance)}};
         if (b.candidate) {
             entry["file"] = b.candidate->file;
             if (!b.candidate->note.empty()) entry["read_as"] = b.candidate->note;
@@ -184,8 +201,8 @@ std::string checkJUnit(const CheckReport& report, const std::string& name)
         suite.skipped += b.verdict == Verdict::missing ? 1 : 0;
         suite.cases += testCase(b);
     }
-    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"" + xmlText(name) + "\" tests=\"" + std::to_string(report.buffers.size()) +
-                      "\" failures=\"" + std::to_string(report.count(Verdict::wrong)) + "\">\n";
+    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"" + xmlText(name) + "\" tests=\"" +
+                      std::to_string(report.buffers.size()) + "\" failures=\"" + std::to_string(report.count(Verdict::wrong)) + "\">\n";
     for (const Suite& suite : suites)
         xml += "  <testsuite name=\"" + xmlText(suite.pass) + "\" tests=\"" + std::to_string(suite.tests) + "\" failures=\"" + std::to_string(suite.failures) +
                "\" skipped=\"" + std::to_string(suite.skipped) + "\">\n" + suite.cases + "  </testsuite>\n";

@@ -14,8 +14,14 @@ namespace {
 constexpr std::size_t kElementsPerChunk = 1 << 18;
 
 /// What of `description` one bit of a packed buffer is; false for buffers that hold numbers.
-bool isVoxels(const Buffer& description) { return description.encoding == Encoding::bits && description.shape.size() == 3; }
-bool isBricks(const Buffer& description) { return isVoxels(description) && description.dtype == Dtype::u8; }
+bool isVoxels(const Buffer& description)
+{
+    return description.encoding == Encoding::bits && description.shape.size() == 3;
+}
+bool isBricks(const Buffer& description)
+{
+    return isVoxels(description) && description.dtype == Dtype::u8;
+}
 
 /// |x| counted in representable values of a binary format from 0 on.
 double floatOrdinal(double x, int mantissaBits, int minExponent)
@@ -68,13 +74,13 @@ class Comparer {
         if (g == c && golden_.tolerance.kind != Tolerance::Kind::exact) return ElementState{state.live, false, false, false, 0.0};
         const Tolerance& t = golden_.tolerance;
         switch (t.kind) {
-            case Tolerance::Kind::exact:
-                state.size = std::abs(c - g);
-                state.outside = true;
-                break;
-            case Tolerance::Kind::ulp: state.size = std::abs(ordinalOf(golden_, c) - ordinalOf(golden_, g)); break;
-            case Tolerance::Kind::absolute: state.size = std::abs(c - g); break;
-            case Tolerance::Kind::relative: state.size = std::abs(c - g) / std::max(std::abs(g), t.floor); break;
+        case Tolerance::Kind::exact:
+            state.size = std::abs(c - g);
+            state.outside = true;
+            break;
+        case Tolerance::Kind::ulp: state.size = std::abs(ordinalOf(golden_, c) - ordinalOf(golden_, g)); break;
+        case Tolerance::Kind::absolute: state.size = std::abs(c - g); break;
+        case Tolerance::Kind::relative: state.size = std::abs(c - g) / std::max(std::abs(g), t.floor); break;
         }
         if (t.kind != Tolerance::Kind::exact) state.outside = !(state.size <= t.value);
         return state;
@@ -111,7 +117,10 @@ void addElement(BufferComparison& sum, std::optional<ElementDifference>& firstOu
     if (worse) sum.worst = difference;
 }
 
-std::string share(std::size_t count, std::size_t of) { return std::to_string(count) + " of " + std::to_string(of); }
+std::string share(std::size_t count, std::size_t of)
+{
+    return std::to_string(count) + " of " + std::to_string(of);
+}
 
 std::string percent(double fraction)
 {
@@ -199,12 +208,12 @@ double ordinalOf(const Buffer& description, double value)
 {
     const bool unorm = description.encoding == Encoding::unorm;
     switch (description.dtype) {
-        case Dtype::u1: return unorm ? value * 255.0 : value;
-        case Dtype::u2: return unorm ? value * 65535.0 : value;
-        case Dtype::f2: return floatOrdinal(value, 10, -14);
-        case Dtype::f4: return floatOrdinal(value, 23, -126);
-        case Dtype::f8: return floatOrdinal(value, 52, -1022);
-        default: return value;
+    case Dtype::u1: return unorm ? value * 255.0 : value;
+    case Dtype::u2: return unorm ? value * 65535.0 : value;
+    case Dtype::f2: return floatOrdinal(value, 10, -14);
+    case Dtype::f4: return floatOrdinal(value, 23, -126);
+    case Dtype::f8: return floatOrdinal(value, 52, -1022);
+    default: return value;
     }
 }
 
@@ -246,9 +255,9 @@ std::string sizeText(const Buffer& golden, double size)
 {
     char text[48];
     switch (golden.tolerance.kind) {
-        case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", size); break;
-        case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %%", 100.0 * size); break;
-        default: std::snprintf(text, sizeof text, "%.3g", size); break;
+    case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", size); break;
+    case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %%", 100.0 * size); break;
+    default: std::snprintf(text, sizeof text, "%.3g", size); break;
     }
     return text;
 }
@@ -257,10 +266,10 @@ std::string toleranceText(const Tolerance& tolerance)
 {
     char text[96];
     switch (tolerance.kind) {
-        case Tolerance::Kind::exact: std::snprintf(text, sizeof text, "exact"); break;
-        case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", tolerance.value); break;
-        case Tolerance::Kind::absolute: std::snprintf(text, sizeof text, "%.3g", tolerance.value); break;
-        case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %% of max(|golden|, %.3g)", 100.0 * tolerance.value, tolerance.floor); break;
+    case Tolerance::Kind::exact: std::snprintf(text, sizeof text, "exact"); break;
+    case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", tolerance.value); break;
+    case Tolerance::Kind::absolute: std::snprintf(text, sizeof text, "%.3g", tolerance.value); break;
+    case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %% of max(|golden|, %.3g)", 100.0 * tolerance.value, tolerance.floor); break;
     }
     std::string whole = text;
     if (tolerance.outliers > 0.0) whole += ", but for " + percent(tolerance.outliers);

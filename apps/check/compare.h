@@ -31,15 +31,15 @@ struct ElementDifference {
 };
 
 struct BufferComparison {
-    std::size_t elements = 0;    ///< compared
-    std::size_t live = 0;        ///< not 0 in both: what the tolerance's fractions are of
-    std::size_t differing = 0;   ///< other bits; +0 and -0 are the same number unless the tolerance is exact
-    std::size_t outside = 0;     ///< beyond the tolerance, NaN included
-    std::size_t notANumber = 0;  ///< NaN in the candidate alone, in the golden alone, or in both with other bits: never excused
+    std::size_t elements = 0;                ///< compared
+    std::size_t live = 0;                    ///< not 0 in both: what the tolerance's fractions are of
+    std::size_t differing = 0;               ///< other bits; +0 and -0 are the same number unless the tolerance is exact
+    std::size_t outside = 0;                 ///< beyond the tolerance, NaN included
+    std::size_t notANumber = 0;              ///< NaN in the candidate alone, in the golden alone, or in both with other bits: never excused
     std::optional<ElementDifference> first;  ///< in memory order: outside the tolerance, or else merely differing
     std::optional<ElementDifference> worst;
     bool holds = true;
-    std::string why;             ///< of a failure: "412 of 16384 outside (2.5 %, 0.5 % allowed)"
+    std::string why;  ///< of a failure: "412 of 16384 outside (2.5 %, 0.5 % allowed)"
 };
 
 /// `candidate` has the golden's description. `given`, when not empty, holds the values as the candidate's file had them (in another element type),

@@ -151,9 +151,8 @@ void suspectGBuffer(HintTrial& trial)
         });
     }
     if (b.name != "gbuffer.depth" || !position) return;
-    trial.suspect("the distance from the eye, not along the viewing axis", [&](std::size_t i) {
-        return covered(i) ? double(glm::length(vectorAt(*position, i) - camera.position)) : trial.expectedAt(i);
-    });
+    trial.suspect("the distance from the eye, not along the viewing axis",
+                  [&](std::size_t i) { return covered(i) ? double(glm::length(vectorAt(*position, i) - camera.position)) : trial.expectedAt(i); });
     const Mat4 clip = clipFromWorld(camera, in.width, in.height, in.sceneBounds);
     trial.suspect("z / w of clip space, not metres", [&](std::size_t i) {
         const Vec4 p = clip * Vec4(vectorAt(*position, i), 1.0f);
@@ -173,15 +172,19 @@ void suspectShading(HintTrial& trial)
             return a > 0.0 ? trial.expectedAt(i) / a * factor : trial.candidateAt(i);
         });
     trial.suspect("multiplied by the albedo twice", [&](std::size_t i) { return trial.expectedAt(i) * decodedValue(*albedo, i); });
-    trial.suspect("multiplied by the albedo, which is not expected here", [&](std::size_t i) { return trial.expectedAt(i) * decodedValue(*albedo, i) / double(kPi); });
+    trial.suspect("multiplied by the albedo, which is not expected here",
+                  [&](std::size_t i) { return trial.expectedAt(i) * decodedValue(*albedo, i) / double(kPi); });
 
     if (b.name != "composite.combined") return;
     const Buffer* parts[] = {sibling(trial, "direct.radiance"), sibling(trial, "composite.diffuse"), sibling(trial, "composite.specular")};
     const char* names[] = {"direct.radiance", "composite.diffuse", "composite.specular"};
     for (int left = 0; left < 3; ++left)
-        if (parts[left]) trial.suspect(std::string(names[left]) + " is not in the sum", [&](std::size_t i) { return trial.expectedAt(i) - decodedValue(*parts[left], i); });
+        if (parts[left])
+            trial.suspect(std::string(names[left]) + " is not in the sum", [&](std::size_t i) { return trial.expectedAt(i) - decodedValue(*parts[left], i); });
     for (int twice = 0; twice < 3; ++twice)
-        if (parts[twice]) trial.suspect(std::string(names[twice]) + " is in the sum twice", [&](std::size_t i) { return trial.expectedAt(i) + decodedValue(*parts[twice], i); });
+        if (parts[twice])
+            trial.suspect(std::string(names[twice]) + " is in the sum twice",
+                          [&](std::size_t i) { return trial.expectedAt(i) + decodedValue(*parts[twice], i); });
 }
 
 /// The irradiance filter with one of its rules left out.
@@ -189,8 +192,8 @@ void suspectFilter(HintTrial& trial)
 {
     const Capture& in = trial.inputs();
     const Buffer* irradiance = sibling(trial, "cones.irradiance");
-    const Buffer *position = sibling(trial, "gbuffer.position"), *normal = sibling(trial, "gbuffer.normal"), *geometric = sibling(trial, "gbuffer.geometric_normal"),
-                 *ids = sibling(trial, "gbuffer.object_id");
+    const Buffer *position = sibling(trial, "gbuffer.position"), *normal = sibling(trial, "gbuffer.normal"),
+                 *geometric = sibling(trial, "gbuffer.geometric_normal"), *ids = sibling(trial, "gbuffer.object_id");
     if (!irradiance || !position || !normal || !geometric || !ids) return;
     struct Rules {
         const char* text;
@@ -199,13 +202,15 @@ void suspectFilter(HintTrial& trial)
         double divisor = 0.0;  ///< 0: the sum of the weights
     };
     constexpr float kCosine = 0.9f, kSlope = 0.1f;  // irradiance_filter.cpp
-    for (const Rules& rules : {Rules{"outer rows and columns count whole, not half", false, true, true, -2, 2}, Rules{"neighbours' normals are not compared", true, false, true, -2, 2},
-                               Rules{"neighbours' distance from the plane is not compared", true, true, false, -2, 2},
-                               Rules{"neighbours are not compared: all covered pixels count", true, false, false, -2, 2},
-                               Rules{"a box of 3x3 pixels, not 5x5 with half edges", false, true, true, -1, 1}, Rules{"a box of 4x4 pixels, not centred", false, true, true, -2, 1},
-                               Rules{"a box of 4x4 pixels, not centred", false, true, true, -1, 2},
-                               Rules{"divided by all weights (16), not by those of the neighbours that count", true, true, true, -2, 2, 16.0},
-                               Rules{"divided by 25, not by the weights of the neighbours that count", false, true, true, -2, 2, 25.0}}) {
+    for (const Rules& rules :
+         {Rules{"outer rows and columns count whole, not half", false, true, true, -2, 2},
+          Rules{"neighbours' normals are not compared", true, false, true, -2, 2},
+          Rules{"neighbours' distance from the plane is not compared", true, true, false, -2, 2},
+          Rules{"neighbours are not compared: all covered pixels count", true, false, false, -2, 2},
+          Rules{"a box of 3x3 pixels, not 5x5 with half edges", false, true, true, -1, 1}, Rules{"a box of 4x4 pixels, not centred", false, true, true, -2, 1},
+          Rules{"a box of 4x4 pixels, not centred", false, true, true, -1, 2},
+          Rules{"divided by all weights (16), not by those of the neighbours that count", true, true, true, -2, 2, 16.0},
+          Rules{"divided by 25, not by the weights of the neighbours that count", false, true, true, -2, 2, 25.0}}) {
         const auto filtered = [&](std::size_t i) {
             const auto pixel = i / 3, width = static_cast<std::size_t>(in.width);
             if (decodedValue(*ids, pixel) == 0.0) return trial.expectedAt(i);
@@ -279,7 +284,8 @@ void suspectGather(HintTrial& trial)
         for (std::size_t cone = 0; cone < count; ++cone) total += decodedValue(*cones, (cone * pixels + i / 3) * 4 + i % 3);
         return total;
     };
-    for (const auto& [factor, text] : {std::pair(double(kPi) / double(count), "all cones weigh the same (their weights differ)"), std::pair(1.0, "the plain sum of the cones, without weights and pi"),
+    for (const auto& [factor, text] : {std::pair(double(kPi) / double(count), "all cones weigh the same (their weights differ)"),
+                                       std::pair(1.0, "the plain sum of the cones, without weights and pi"),
                                        std::pair(1.0 / double(count), "the plain mean of the cones, without weights and pi")})
         trial.suspect(text, [&, factor = factor](std::size_t i) { return sum(i) * factor; });
 }

@@ -62,7 +62,10 @@ class LayoutSuspicions {
             return from == kNowhere ? trial_.candidateAt(i) : trial_.expectedAt(from);  // what came from outside is anybody's guess
         });
     }
-    bool isLine(std::size_t axis) const { return names_[axis] == "row" || names_[axis] == "column" || names_[axis] == "x" || names_[axis] == "y" || names_[axis] == "z"; }
+    bool isLine(std::size_t axis) const
+    {
+        return names_[axis] == "row" || names_[axis] == "column" || names_[axis] == "x" || names_[axis] == "y" || names_[axis] == "z";
+    }
 
     void flips()
     {
@@ -87,7 +90,8 @@ class LayoutSuspicions {
                 if (!isLine(a) || !isLine(b) || plain_.extents[a] != plain_.extents[b] || plain_.extents[a] < 2) continue;
                 Rearrangement r = plain_;
                 std::swap(r.strides[a], r.strides[b]);
-                suspect(names_[a] + (names_[a].size() > 1 ? "s" : "") + " and " + names_[b] + (names_[b].size() > 1 ? "s" : "") + " are exchanged (transposed)", r);
+                suspect(names_[a] + (names_[a].size() > 1 ? "s" : "") + " and " + names_[b] + (names_[b].size() > 1 ? "s" : "") + " are exchanged (transposed)",
+                        r);
             }
     }
 
@@ -119,7 +123,8 @@ class LayoutSuspicions {
     }
     bool anyWrong(std::size_t axis, std::size_t at) const
     {
-        return std::any_of(trial_.sample().begin(), trial_.sample().end(), [&](std::size_t i) { return i / plain_.strides[axis] % plain_.extents[axis] == at; });
+        return std::any_of(trial_.sample().begin(), trial_.sample().end(),
+                           [&](std::size_t i) { return i / plain_.strides[axis] % plain_.extents[axis] == at; });
     }
 
     /// Layers or cones in another order.
@@ -145,7 +150,8 @@ class LayoutSuspicions {
             const std::size_t other = r.index[axis][last];
             const bool pair = count == 2 && r.index[axis][other] == last;
             suspect(pair ? names_[axis] + "s " + std::to_string(std::min(last, other)) + " and " + std::to_string(std::max(last, other)) + " are exchanged"
-                         : names_[axis] + "s are in another order: " + moved, r);
+                         : names_[axis] + "s are in another order: " + moved,
+                    r);
         }
     }
 
@@ -173,7 +179,9 @@ class LayoutSuspicions {
         Rearrangement r = plain_;
         r.index.back() = from;
         const bool pair = count == 2 && from[from[last]] == last;
-        suspect(pair ? "channels '" + buffer_.components[from[last]] + "' and '" + buffer_.components[last] + "' are exchanged" : "channels are mixed up: " + moved, r);
+        suspect(
+            pair ? "channels '" + buffer_.components[from[last]] + "' and '" + buffer_.components[last] + "' are exchanged" : "channels are mixed up: " + moved,
+            r);
     }
     std::size_t componentAxis() const { return plain_.extents.size() - 1; }
 

@@ -17,7 +17,10 @@ std::string nameAtLevel(const std::string& name, int level)
     return name.substr(0, at + 3) + std::to_string(level);
 }
 
-bool isMip(const std::string& name) { return name.find(".mip") != std::string::npos; }
+bool isMip(const std::string& name)
+{
+    return name.find(".mip") != std::string::npos;
+}
 
 /// Texel of the level below (or of any finer level) that a child offset names, for an element of this level.
 class Family {
@@ -111,15 +114,24 @@ struct Quantiser {
     const char* text;
     double (*code)(const Buffer& storage, double ordinal);
 };
-double towardZero(const Buffer&, double o) { return std::trunc(o); }
-double nearestUp(const Buffer&, double o) { return std::floor(o + 0.5); }
+double towardZero(const Buffer&, double o)
+{
+    return std::trunc(o);
+}
+double nearestUp(const Buffer&, double o)
+{
+    return std::floor(o + 0.5);
+}
 double nearestEven(const Buffer&, double o)
 {
     const double low = std::floor(o), rest = o - low;
     if (rest != 0.5) return rest < 0.5 ? low : low + 1.0;
     return std::fmod(low, 2.0) == 0.0 ? low : low + 1.0;
 }
-double awayFromZero(const Buffer&, double o) { return o < 0.0 ? std::floor(o) : std::ceil(o); }
+double awayFromZero(const Buffer&, double o)
+{
+    return o < 0.0 ? std::floor(o) : std::ceil(o);
+}
 constexpr double kTieSteps = 65536.0;
 constexpr Quantiser kQuantisers[] = {
     {"rounds to nearest even", nearestEven},

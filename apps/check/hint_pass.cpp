@@ -12,7 +12,7 @@ namespace lrsm {
 
 namespace {
 
-constexpr std::size_t kPixels = 4096;      ///< traced for each suspicion about the cones
+constexpr std::size_t kPixels = 4096;         ///< traced for each suspicion about the cones
 constexpr std::size_t kMostTexels = 1 << 22;  ///< passes with larger outputs are not tried once a setting
 
 std::string stageOf(const std::string& pass)
@@ -209,7 +209,8 @@ class PassSuspicions {
         const std::vector<CapturedLight> lights = changed_.lights;
         for (std::size_t light = 0; light < lights.size(); ++light) {
             tryWithoutLight(light);
-            for (std::size_t layer = 0; layer < lights[light].storedRanges().size() && lights[light].storedRanges().size() > 1; ++layer) tryWithoutLayer(light, layer);
+            for (std::size_t layer = 0; layer < lights[light].storedRanges().size() && lights[light].storedRanges().size() > 1; ++layer)
+                tryWithoutLayer(light, layer);
         }
         trySides();
     }
@@ -290,7 +291,8 @@ class PassSuspicions {
         for (std::size_t at = 0; at < before.size(); at += pixel) {
             const std::size_t in = at % slice / pixel, x = in % width, y = in / width;
             const std::size_t from = rows ? (height - 1 - y) * width + x : y * width + width - 1 - x;
-            std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(at / slice * slice + from * pixel), pixel, buffer.bytes.begin() + static_cast<std::ptrdiff_t>(at));
+            std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(at / slice * slice + from * pixel), pixel,
+                        buffer.bytes.begin() + static_cast<std::ptrdiff_t>(at));
         }
     }
 

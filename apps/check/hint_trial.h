@@ -35,10 +35,10 @@ class HintTrial {
         if (std::isnan(predicted) || std::isnan(c)) return std::isnan(predicted) == std::isnan(c);
         if (predicted == c) return true;
         switch (kind_) {
-            case Tolerance::Kind::exact: return std::abs(predicted - c) <= kExactSlack * std::abs(predicted);
-            case Tolerance::Kind::ulp: return std::abs(ordinalOf(expected(), predicted) - ordinalOf(expected(), c)) <= slack_;
-            case Tolerance::Kind::absolute: return std::abs(predicted - c) <= slack_;
-            case Tolerance::Kind::relative: break;
+        case Tolerance::Kind::exact: return std::abs(predicted - c) <= kExactSlack * std::abs(predicted);
+        case Tolerance::Kind::ulp: return std::abs(ordinalOf(expected(), predicted) - ordinalOf(expected(), c)) <= slack_;
+        case Tolerance::Kind::absolute: return std::abs(predicted - c) <= slack_;
+        case Tolerance::Kind::relative: break;
         }
         return std::abs(predicted - c) <= slack_ * std::max(std::abs(predicted), floor_);
     }

@@ -17,10 +17,30 @@ struct NamedFactor {
 };
 constexpr double kPiD = 3.14159265358979323846;
 constexpr NamedFactor kFactors[] = {
-    {kPiD, "pi"},       {1 / kPiD, "1 / pi"}, {2 * kPiD, "2 pi"}, {0.5 / kPiD, "1 / (2 pi)"}, {4 * kPiD, "4 pi"}, {kPiD * kPiD, "pi^2"},
-    {2.0, "2"},         {0.5, "1 / 2"},       {4.0, "4"},         {0.25, "1 / 4"},            {8.0, "8"},         {0.125, "1 / 8"},
-    {3.0, "3"},         {1.0 / 3, "1 / 3"},   {255.0, "255"},     {1.0 / 255, "1 / 255"},     {255.0 / 256, "255 / 256"}, {256.0 / 255, "256 / 255"},
-    {65535.0 / 65536, "65535 / 65536"}, {65535.0, "65535"}, {16.0, "16"}, {1.0 / 16, "1 / 16"}, {6.0, "6"}, {1.0 / 6, "1 / 6"},
+    {kPiD, "pi"},
+    {1 / kPiD, "1 / pi"},
+    {2 * kPiD, "2 pi"},
+    {0.5 / kPiD, "1 / (2 pi)"},
+    {4 * kPiD, "4 pi"},
+    {kPiD * kPiD, "pi^2"},
+    {2.0, "2"},
+    {0.5, "1 / 2"},
+    {4.0, "4"},
+    {0.25, "1 / 4"},
+    {8.0, "8"},
+    {0.125, "1 / 8"},
+    {3.0, "3"},
+    {1.0 / 3, "1 / 3"},
+    {255.0, "255"},
+    {1.0 / 255, "1 / 255"},
+    {255.0 / 256, "255 / 256"},
+    {256.0 / 255, "256 / 255"},
+    {65535.0 / 65536, "65535 / 65536"},
+    {65535.0, "65535"},
+    {16.0, "16"},
+    {1.0 / 16, "1 / 16"},
+    {6.0, "6"},
+    {1.0 / 6, "1 / 6"},
 };
 constexpr double kSameFactor = 4e-3;
 
@@ -98,7 +118,8 @@ class ValueSuspicions {
         // A known constant, where the ratio is one, explains exactly what a measured one explains nearly.
         const std::string name = nameOfFactor(factor);
         for (const NamedFactor& known : kFactors)
-            if (name == known.name && suspect("off by a constant factor: " + name + " times what is expected", [&](double g) { return g * known.value; })) return;
+            if (name == known.name && suspect("off by a constant factor: " + name + " times what is expected", [&](double g) { return g * known.value; }))
+                return;
         suspect("off by a constant factor: " + number(factor) + " times what is expected", [&](double g) { return g * factor; });
     }
 
@@ -166,7 +187,8 @@ void suspectConstant(HintTrial& trial)
 {
     const double first = trial.candidateAt(trial.sample().front());
     if (trial.expected().encoding == Encoding::bits) return;
-    trial.suspect(std::isnan(first) ? "all is NaN" : "every element is " + number(first) + (first == 0.0 ? ": never written?" : ""), [&](std::size_t) { return first; });
+    trial.suspect(std::isnan(first) ? "all is NaN" : "every element is " + number(first) + (first == 0.0 ? ": never written?" : ""),
+                  [&](std::size_t) { return first; });
 }
 
 /// Vectors of three: normals scaled, or unit where they should carry a weight.

@@ -118,8 +118,8 @@ std::vector<std::string> HintTrial::spoken() const
     for (const Suspicion& s : sorted) {
         const bool sure = s.share() <= kSure;
         if (texts.size() == kMostHints || (!sure && !texts.empty())) break;
-        const std::string explained = s.left == 0 ? "explains all " + std::to_string(s.before)
-                                                  : "explains " + std::to_string(s.before - s.left) + " of " + std::to_string(s.before);
+        const std::string explained =
+            s.left == 0 ? "explains all " + std::to_string(s.before) : "explains " + std::to_string(s.before - s.left) + " of " + std::to_string(s.before);
         texts.push_back((sure ? "" : "partly: ") + s.text + " (" + explained + ")");
     }
     return texts;

@@ -7,11 +7,11 @@
 namespace lrsm {
 
 struct HintQuestion {
-    const Capture& inputs;             ///< what the pass read: the golden, or the candidate laid over it
+    const Capture& inputs;  ///< what the pass read: the golden, or the candidate laid over it
     const Buffer& expected;
     const CandidateBuffer& candidate;
     const BufferComparison& comparison;
-    bool runPass = true;               ///< also run the pass with other settings and other inputs, where it can be
+    bool runPass = true;  ///< also run the pass with other settings and other inputs, where it can be
 };
 
 /// What the wrong elements have in common: "all in layer 1, columns 120-127, component 'z2'; the candidate is 0 in all of them". May be empty.

@@ -81,7 +81,8 @@ void rerunCones(const Capture& inputs, std::vector<Buffer>& outputs)
     std::vector<Lrsm> lrsms;
     for (std::size_t light = 0; light < inputs.lights.size(); ++light) lrsms.push_back(lrsmFromCapture(inputs, light));
     ConeRecord record;
-    const Gathered gathered = traceCones(gbufferFromCapture(inputs), inputs.camera, opacityFromCapture(inputs), lrsms, inputs.needs, inputs.settings.cones, &record);
+    const Gathered gathered =
+        traceCones(gbufferFromCapture(inputs), inputs.camera, opacityFromCapture(inputs), lrsms, inputs.needs, inputs.settings.cones, &record);
     toBuffers(gathered, record, outputs);
 }
 

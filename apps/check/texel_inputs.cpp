@@ -35,15 +35,25 @@ class Inputs {
     {
         const std::string& pass = buffer_.pass;
         const int level = levelOf(buffer_.name);
-        if (pass == "voxel mips") voxelChildren(level);
-        else if (pass.starts_with("lrsm") && level > 0) layerChildren(level);
-        else if (pass.starts_with("lrsm")) rsmBlock();
-        else if (pass.starts_with("rsm")) texelOf({"rsm#.depth", "rsm#.radiance", "rsm#.normal"});
-        else if (pass == "gbuffer") texelOf({"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "direct") texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "cones") cones();
-        else if (pass == "filter") texelOf({"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"});
-        else if (pass == "composite") texelOf({"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse", "composite.specular"});
+        if (pass == "voxel mips")
+            voxelChildren(level);
+        else if (pass.starts_with("lrsm") && level > 0)
+            layerChildren(level);
+        else if (pass.starts_with("lrsm"))
+            rsmBlock();
+        else if (pass.starts_with("rsm"))
+            texelOf({"rsm#.depth", "rsm#.radiance", "rsm#.normal"});
+        else if (pass == "gbuffer")
+            texelOf({"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
+        else if (pass == "direct")
+            texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
+        else if (pass == "cones")
+            cones();
+        else if (pass == "filter")
+            texelOf({"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"});
+        else if (pass == "composite")
+            texelOf(
+                {"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse", "composite.specular"});
     }
 
   private:
@@ -84,8 +94,8 @@ class Inputs {
                 add("tables.cone_directions", {static_cast<std::size_t>(decodedValue(*rotation, (row & 3) * 4 + (column & 3))), at_[0] % axes->shape[1]});
         }
         list.push_back({"every step of its cones", "lrsm render " + capture_.sceneName + " --size " + std::to_string(capture_.width) + "x" +
-                                                        std::to_string(capture_.height) + " --pixel " + std::to_string(column) + "," + std::to_string(row) +
-                                                        ", with the golden's settings"});
+                                                       std::to_string(capture_.height) + " --pixel " + std::to_string(column) + "," + std::to_string(row) +
+                                                       ", with the golden's settings"});
     }
 
     void voxelChildren(int level)
@@ -93,8 +103,9 @@ class Inputs {
         const std::string below = level > 1 ? "voxel.mip" + std::to_string(level - 1) : "voxel.bits";
         for (std::size_t child = 0; child < 8; ++child) add(below, {2 * at_[0] + (child >> 2), 2 * at_[1] + (child >> 1 & 1), 2 * at_[2] + (child & 1)});
         if (level > 1 && level <= 3 && buffer_.components.size() == 3)
-            list.push_back({"of voxel.bits", "its value counts columns of the " + std::to_string(1 << level) + "^3 voxels from z " + std::to_string(at_[0] << level) + ", y " +
-                                                 std::to_string(at_[1] << level) + ", x " + std::to_string(at_[2] << level) + " on"});
+            list.push_back({"of voxel.bits", "its value counts columns of the " + std::to_string(1 << level) + "^3 voxels from z " +
+                                                 std::to_string(at_[0] << level) + ", y " + std::to_string(at_[1] << level) + ", x " +
+                                                 std::to_string(at_[2] << level) + " on"});
     }
 
     void layerChildren(int level)
@@ -113,8 +124,9 @@ class Inputs {
         const std::vector<LayerRange> ranges = capture_.lights[light].storedRanges();
         if (at_[0] >= ranges.size()) return;
         const LayerRange& r = ranges[at_[0]];
-        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + shortest(r.depthMin) + ", " + shortest(r.depthMax) + "], <n.l> [" + shortest(r.nDotLMin) +
-                                                                        ", " + shortest(r.nDotLMax) + "], overlap " + shortest(r.delta)});
+        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + shortest(r.depthMin) + ", " + shortest(r.depthMax) + "], <n.l> [" +
+                                                                        shortest(r.nDotLMin) + ", " + shortest(r.nDotLMax) + "], overlap " +
+                                                                        shortest(r.delta)});
     }
 
     const Capture& capture_;

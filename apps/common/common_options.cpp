@@ -1,8 +1,8 @@
 #include "apps/common/common_options.h"
 
 #include "core/base/errors.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/load_scene.h"
+#include "core/settings/settings_table.h"
 
 #include <charconv>
 #include <cmath>
@@ -97,8 +97,8 @@ IVec2 parsePixel(const std::string& text, const IVec2& size)
 {
     IVec2 pixel(0);
     if (!parsePair(text, ',', pixel) || pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
-        throw InputError("--pixel " + text, "must be x,y inside the picture of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                                                ", counted from the top left");
+        throw InputError("--pixel " + text,
+                         "must be x,y inside the picture of " + std::to_string(size.x) + "x" + std::to_string(size.y) + ", counted from the top left");
     return pixel;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 
 #include <CLI/CLI.hpp>
 #include <string>

@@ -29,7 +29,10 @@ std::string brief(double value)
     return text;
 }
 
-std::string brief(const Vec3& v) { return "(" + brief(v.x) + ", " + brief(v.y) + ", " + brief(v.z) + ")"; }
+std::string brief(const Vec3& v)
+{
+    return "(" + brief(v.x) + ", " + brief(v.y) + ", " + brief(v.z) + ")";
+}
 
 std::string describe(const Light& light)
 {
@@ -46,9 +49,9 @@ std::string describe(const Light& light)
 
 std::string describe(const Camera& camera)
 {
-    return std::string(camera.perspective ? "perspective" : "orthographic") + " at " + brief(camera.position) + ", looking along " +
-           brief(camera.forward) + (camera.perspective ? ", vertical field of view " + brief(camera.verticalFov * kDegrees) + " degrees"
-                                                       : ", " + brief(camera.verticalExtent) + " m high");
+    return std::string(camera.perspective ? "perspective" : "orthographic") + " at " + brief(camera.position) + ", looking along " + brief(camera.forward) +
+           (camera.perspective ? ", vertical field of view " + brief(camera.verticalFov * kDegrees) + " degrees"
+                               : ", " + brief(camera.verticalExtent) + " m high");
 }
 
 std::size_t countDecoded(const Scene& scene)
@@ -60,9 +63,15 @@ std::size_t countDecoded(const Scene& scene)
 
 }  // namespace
 
-std::string jsonText(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string jsonText(const Json& json)
+{
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
-Json vectorJson(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json vectorJson(const Vec3& v)
+{
+    return {v.x, v.y, v.z};
+}
 
 Json cameraJson(const Camera& camera)
 {
@@ -111,21 +120,19 @@ Json sceneJson(const Scene& scene, const std::string& sha256)
 
 Json requirementsJson(const Requirements& needs)
 {
-    return {{"specular", needs.specular},         {"alpha_test", needs.alphaTest}, {"normal_maps", needs.normalMaps}, {"textures", needs.textures},
-            {"vertex_colors", needs.vertexColors}, {"left_out", needs.leftOut}};
+    return {{"specular", needs.specular}, {"alpha_test", needs.alphaTest},       {"normal_maps", needs.normalMaps},
+            {"textures", needs.textures}, {"vertex_colors", needs.vertexColors}, {"left_out", needs.leftOut}};
 }
 
 void printScene(std::ostream& out, const Scene& scene)
 {
-    out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.triangleCount() << " triangles, " << scene.materials.size()
-        << " materials, " << scene.textures.size() << " textures (" << countDecoded(scene) << " used)\n"
+    out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.triangleCount() << " triangles, " << scene.materials.size() << " materials, "
+        << scene.textures.size() << " textures (" << countDecoded(scene) << " used)\n"
         << "bounds: " << brief(scene.bounds.min) << " .. " << brief(scene.bounds.max) << " m\n";
     out << "lights: " << scene.lights.size() << ", one LRSM each\n";
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        out << "  " << i << " \"" << scene.lights[i].name << "\": " << describe(scene.lights[i]) << "\n";
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) out << "  " << i << " \"" << scene.lights[i].name << "\": " << describe(scene.lights[i]) << "\n";
     out << "cameras: " << scene.cameras.size() << "\n";
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-        out << "  " << i << " \"" << scene.cameras[i].name << "\": " << describe(scene.cameras[i]) << "\n";
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) out << "  " << i << " \"" << scene.cameras[i].name << "\": " << describe(scene.cameras[i]) << "\n";
     if (!scene.notes.empty()) out << "notes:\n";
     for (const std::string& note : scene.notes) out << "  " << note << "\n";
 }

@@ -1,8 +1,8 @@
 #include "apps/common/frame_files.h"
 
 #include "apps/common/describe.h"
-#include "core/settings/settings_table.h"
 #include "core/imageio/image_io.h"
+#include "core/settings/settings_table.h"
 
 #include <nlohmann/json.hpp>
 
@@ -43,14 +43,21 @@ Json countersJson(const Frame& frame)
     return {{"voxels_set", frame.voxelsSet},
             {"gbuffer_raster", rasterJson(frame.gbufferRaster)},
             {"lights", lights},
-            {"cones", {{"cones", frame.cones.cones}, {"steps", frame.cones.steps}, {"voxel_taps", frame.cones.voxelTaps}, {"lrsm_samples", frame.cones.lrsmSamples}}}};
+            {"cones",
+             {{"cones", frame.cones.cones}, {"steps", frame.cones.steps}, {"voxel_taps", frame.cones.voxelTaps}, {"lrsm_samples", frame.cones.lrsmSamples}}}};
 }
 
 Json passesJson(const Frame& frame)
 {
     Json passes = Json::array();
     for (const PassReport& pass : frame.passes)
-        passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}, {"cpu_milliseconds", pass.cpuMilliseconds}, {"bytes", pass.bytes}, {"gpu_format_bytes", pass.gpuBytes}, {"sha256", pass.sha256}, {"non_finite", pass.nonFinite}});
+        passes.push_back({{"name", pass.name},
+                          {"milliseconds", pass.milliseconds},
+                          {"cpu_milliseconds", pass.cpuMilliseconds},
+                          {"bytes", pass.bytes},
+                          {"gpu_format_bytes", pass.gpuBytes},
+                          {"sha256", pass.sha256},
+                          {"non_finite", pass.nonFinite}});
     return passes;
 }
 

@@ -27,6 +27,9 @@ CatchInterrupts::~CatchInterrupts()
     for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
 }
 
-const std::atomic<bool>& CatchInterrupts::asked() const { return interrupted; }
+const std::atomic<bool>& CatchInterrupts::asked() const
+{
+    return interrupted;
+}
 
 }  // namespace lrsm

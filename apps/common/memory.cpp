@@ -49,10 +49,16 @@ std::size_t total(const std::vector<MemoryRow>& rows)
     return std::accumulate(rows.begin(), rows.end(), std::size_t(0), [](std::size_t sum, const MemoryRow& row) { return sum + row.predicted; });
 }
 
-int layersAsked(const Settings& settings) { return settings.layers.depthLayers * settings.layers.normalLayers; }
+int layersAsked(const Settings& settings)
+{
+    return settings.layers.depthLayers * settings.layers.normalLayers;
+}
 
 /// Name of the pass whose output the row measures: the pyramid holds the base level too.
-std::string passOf(const MemoryRow& row) { return row.structure == "voxels" ? "voxel mips" : row.structure; }
+std::string passOf(const MemoryRow& row)
+{
+    return row.structure == "voxels" ? "voxel mips" : row.structure;
+}
 
 }  // namespace
 
@@ -74,22 +80,32 @@ std::vector<int> countLayersKept(const Scene& scene, const Requirements& needs, 
     return kept;
 }
 
-std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width,
-                                     int height)
+std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width, int height)
 {
     const int voxels = settings.voxel.resolution, texels = settings.rsm.resolution, base = texels / 2;
     std::vector<MemoryRow> rows;
-    rows.push_back({"voxels", std::to_string(voxels) + "^3, " + (settings.voxel.axes == OpacityAxes::directional ? "directional" : "isotropic"),
-                    predictPyramidBytes(settings.voxel), voxelGpuBytes(settings.voxel), table2Voxels(voxels), {}});
+    rows.push_back({"voxels",
+                    std::to_string(voxels) + "^3, " + (settings.voxel.axes == OpacityAxes::directional ? "directional" : "isotropic"),
+                    predictPyramidBytes(settings.voxel),
+                    voxelGpuBytes(settings.voxel),
+                    table2Voxels(voxels),
+                    {}});
     for (std::size_t i = 0; i < layersKept.size(); ++i)
-        rows.push_back({"rsm " + std::to_string(i), std::to_string(texels) + "^2", Rsm::predictBytes(texels), Rsm::gpuBytes(texels),
-                        texels == 1024 ? "22.4 MB (with mips)" : "", {}});
+        rows.push_back({"rsm " + std::to_string(i),
+                        std::to_string(texels) + "^2",
+                        Rsm::predictBytes(texels),
+                        Rsm::gpuBytes(texels),
+                        texels == 1024 ? "22.4 MB (with mips)" : "",
+                        {}});
     for (std::size_t i = 0; i < layersKept.size(); ++i) {
         const auto layers = static_cast<std::size_t>(layersKept[i]);
         const std::size_t bytes = layers * predictLayerBytes(texels);
         rows.push_back({"lrsm " + std::to_string(i),
-                        std::to_string(base) + "^2, " + std::to_string(layers) + " of " + std::to_string(layersAsked(settings)) + " layers", bytes,
-                        bytes / sizeof(LrsmTexel) * 24, table2Lrsm(base, layersKept[i]), {}});
+                        std::to_string(base) + "^2, " + std::to_string(layers) + " of " + std::to_string(layersAsked(settings)) + " layers",
+                        bytes,
+                        bytes / sizeof(LrsmTexel) * 24,
+                        table2Lrsm(base, layersKept[i]),
+                        {}});
     }
     rows.push_back({"gbuffer", std::to_string(width) + "x" + std::to_string(height), GBuffer::predictBytes(width, height, needs.specular), 0, "", {}});
     return rows;
@@ -142,8 +158,7 @@ nlohmann::ordered_json memoryJson(const std::vector<MemoryRow>& rows)
 void printMemory(std::ostream& out, const std::vector<MemoryRow>& rows)
 {
     const auto line = [&](const std::string& a, const std::string& b, const std::string& c, const std::string& d, const std::string& e) {
-        out << "  " << std::left << std::setw(9) << a << std::setw(24) << b << std::right << std::setw(12) << c << std::setw(13) << d << "   "
-            << e << "\n";
+        out << "  " << std::left << std::setw(9) << a << std::setw(24) << b << std::right << std::setw(12) << c << std::setw(13) << d << "   " << e << "\n";
     };
     line("", "", "here", "GPU formats", "Table 2");
     std::size_t bytes = 0, gpuBytes = 0;

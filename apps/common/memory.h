@@ -24,8 +24,7 @@ struct MemoryRow {
 std::vector<int> countLayersKept(const Scene& scene, const Requirements& needs, const Settings& settings);
 
 /// `layersKept` has one entry a light.
-std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width,
-                                     int height);
+std::vector<MemoryRow> predictMemory(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width, int height);
 
 /// All that is held at once while a frame is rendered, its pictures included: what enforceMemoryLimit holds against the limit.
 std::size_t frameBytes(const Settings& settings, const Requirements& needs, const std::vector<int>& layersKept, int width, int height);

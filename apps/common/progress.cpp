@@ -1,14 +1,17 @@
 #include "apps/common/progress.h"
 
+#include <unistd.h>
 #include <algorithm>
 #include <cstdio>
-#include <unistd.h>
 
 namespace lrsm {
 
 Progress::Progress(bool quiet) : active_(!quiet && ::isatty(STDERR_FILENO)) {}
 
-Progress::~Progress() { clear(); }
+Progress::~Progress()
+{
+    clear();
+}
 
 void Progress::show(const std::string& what, double fraction)
 {

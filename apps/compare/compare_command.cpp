@@ -1,6 +1,6 @@
 #include "apps/common/commands.h"
-#include "apps/compare/compare_layer.h"
 #include "apps/common/describe.h"
+#include "apps/compare/compare_layer.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 
@@ -61,7 +61,8 @@ CompareSettings chosenSettings(const CompareArguments& options, bool bothSceneRe
     if (!(options.pixelsPerDegree >= 1.0 && options.pixelsPerDegree <= 1000.0)) throw InputError("--ppd", "must be 1 .. 1000 pixels per degree");
     if (options.exposure != "auto") {
         float stops = 0.0f;
-        if (!parse(options.exposure, stops) || !(std::abs(stops) <= 100.0f)) throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
+        if (!parse(options.exposure, stops) || !(std::abs(stops) <= 100.0f))
+            throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
         settings.exposureStops = stops;
     }
     char rest = 0;
@@ -70,7 +71,8 @@ CompareSettings chosenSettings(const CompareArguments& options, bool bothSceneRe
         throw InputError("--regions " + options.regions, "must be COLUMNSxROWS, 1 .. 64 each, as 4x4");
     if (options.flipExposures != "auto") {
         FlipExposures e;
-        if (std::sscanf(options.flipExposures.c_str(), "%lf:%lf:%d%c", &e.start, &e.stop, &e.count, &rest) != 3 || !(e.start <= e.stop) || e.count < 1 || e.count > 100)
+        if (std::sscanf(options.flipExposures.c_str(), "%lf:%lf:%d%c", &e.start, &e.stop, &e.count, &rest) != 3 || !(e.start <= e.stop) || e.count < 1 ||
+            e.count > 100)
             throw InputError("--flip-exposures " + options.flipExposures, "must be auto or START:STOP:COUNT in stops, as -2:4:7");
         settings.flipExposures = e;
     }
@@ -99,7 +101,8 @@ std::vector<std::string> chosenLayers(const CompareArguments& options, const Sid
         for (const char* name : {"irradiance", "combined", ""})
             if (layers.empty() && both(name)) layers = {name};
         if (layers.empty())
-            throw InputError(test.path, "has no picture layer in common with " + reference.path + " (" + layerList(test.image) + " against " + layerList(reference.image) + ")");
+            throw InputError(test.path, "has no picture layer in common with " + reference.path + " (" + layerList(test.image) + " against " +
+                                            layerList(reference.image) + ")");
     }
     if (layers == std::vector<std::string>{"all"}) {
         layers.clear();
@@ -155,7 +158,8 @@ std::vector<Gate> parseGates(const CompareArguments& options)
             const std::string option = (above ? "--fail-above " : "--fail-below ") + text;
             const std::size_t at = text.find('=');
             Gate gate{text.substr(0, at), 0.0, above};
-            if (at == std::string::npos || !parse(text.substr(at + 1), gate.limit) || std::isnan(gate.limit)) throw InputError(option, "must be metric=value, as rmse=0.25");
+            if (at == std::string::npos || !parse(text.substr(at + 1), gate.limit) || std::isnan(gate.limit))
+                throw InputError(option, "must be metric=value, as rmse=0.25");
             std::string known;
             bool found = false;
             for (const auto& [name, meaning] : metricNames()) {
@@ -190,13 +194,14 @@ std::vector<std::string> failures(const std::vector<Gate>& gates, const LayerCom
 void printComparison(const LayerComparison& c)
 {
     const Metrics& m = c.metrics;
-    std::printf("%s: energy %.4f (R %.4f G %.4f B %.4f)  RMSE/mean %.4f  MAE/mean %.4f  relMSE %.4g  PSNR %.2f dB  SSIM %.4f  FLIP %.4f", c.layer.empty() ? "RGB" : c.layer.c_str(),
-                m.energyRatio, m.channelRatio[0], m.channelRatio[1], m.channelRatio[2], m.rmse, m.mae, m.relMse, c.psnr, c.ssim, c.flip.mean);
+    std::printf("%s: energy %.4f (R %.4f G %.4f B %.4f)  RMSE/mean %.4f  MAE/mean %.4f  relMSE %.4g  PSNR %.2f dB  SSIM %.4f  FLIP %.4f",
+                c.layer.empty() ? "RGB" : c.layer.c_str(), m.energyRatio, m.channelRatio[0], m.channelRatio[1], m.channelRatio[2], m.rmse, m.mae, m.relMse,
+                c.psnr, c.ssim, c.flip.mean);
     if (c.hdrFlip) std::printf("  HDR-FLIP %.4f", c.hdrFlip->mean);
     std::printf("  (%llu pixels)\n", static_cast<unsigned long long>(m.pixels));
     if (c.pixelZ)
-        std::printf("  truth's own noise: RMSE/mean %.4f; z per pixel: rms %.3f, largest %.2f; per 8x8 block: rms %.3f, largest %.2f\n", c.pixelZ->noise, c.pixelZ->rms,
-                    c.pixelZ->largest, c.blockZ->rms, c.blockZ->largest);
+        std::printf("  truth's own noise: RMSE/mean %.4f; z per pixel: rms %.3f, largest %.2f; per 8x8 block: rms %.3f, largest %.2f\n", c.pixelZ->noise,
+                    c.pixelZ->rms, c.pixelZ->largest, c.blockZ->rms, c.blockZ->largest);
     std::printf("  regions, energy ratio (RMSE):");
     for (const RegionMetrics& r : c.regions) {
         if (r.region.x0 == 0) std::printf("\n   ");
@@ -219,7 +224,10 @@ std::string metadataText(const LayeredImage& image)
 void writeResults(const CompareArguments& options, const Side& test, const Side& reference, const std::vector<LayerComparison>& comparisons, const Json& json)
 {
     OutputFolder folder(options.output);
-    Comparison report{test.path + " against " + reference.path, "", {}, {{"Test: " + test.path, metadataText(test.image)}, {"Reference: " + reference.path, metadataText(reference.image)}}};
+    Comparison report{test.path + " against " + reference.path,
+                      "",
+                      {},
+                      {{"Test: " + test.path, metadataText(test.image)}, {"Reference: " + reference.path, metadataText(reference.image)}}};
     const auto& failed = json["failures"];
     report.summary = failed.empty() ? "No limit was passed." : "Failed: ";
     for (const auto& line : failed) report.summary += line.get<std::string>() + ". ";
@@ -237,7 +245,9 @@ void writeResults(const CompareArguments& options, const Side& test, const Side&
 int runCompare(const CompareArguments& options)
 {
     const std::vector<Gate> gates = parseGates(options);
-    if (!options.output.empty()) { const OutputFolder writable(options.output); }
+    if (!options.output.empty()) {
+        const OutputFolder writable(options.output);
+    }
     const Side test = readSide(options.test), reference = readSide(options.reference);
     if (test.image.width != reference.image.width || test.image.height != reference.image.height)
         throw InputError(test.path, "is " + std::to_string(test.image.width) + "x" + std::to_string(test.image.height) + ", but " + reference.path + " is " +
@@ -246,8 +256,15 @@ int runCompare(const CompareArguments& options)
     const PixelMask seen = options.allPixels ? PixelMask() : seenPixels(test, reference);
 
     std::vector<LayerComparison> comparisons;
-    Json json = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"command", "compare"}, {"test", test.path}, {"reference", reference.path},
-                 {"size", {test.image.width, test.image.height}}, {"pixels_per_degree", settings.pixelsPerDegree}, {"layers", Json::array()}, {"failures", Json::array()}};
+    Json json = {{"program", "lrsm"},
+                 {"version", LRSM_VERSION},
+                 {"command", "compare"},
+                 {"test", test.path},
+                 {"reference", reference.path},
+                 {"size", {test.image.width, test.image.height}},
+                 {"pixels_per_degree", settings.pixelsPerDegree},
+                 {"layers", Json::array()},
+                 {"failures", Json::array()}};
     for (const std::string& layer : chosenLayers(options, test, reference)) {
         comparisons.push_back(compareLayer(layer, rgbLayer(reference.image, layer, reference.path), rgbLayer(test.image, layer, test.path),
                                            varianceOf(layer, test, reference), seen, settings));
@@ -276,14 +293,20 @@ Command addCompare(CLI::App& program)
     parser->add_option("TEST", options->test, "folder of a render, or an EXR or PNG")->required();
     parser->add_option("REFERENCE", options->reference, "folder of a reference, or an EXR or PNG of the same size")->required();
     parser->add_option("-o,--output", options->output, "folder for report.html, compare.json and maps");
-    parser->add_option("--layer", options->layers, "layer to compare, repeatable; RGB: the unnamed one; all: every one both have. By default irradiance, else combined, else RGB")->allow_extra_args(false);
+    parser
+        ->add_option("--layer", options->layers,
+                     "layer to compare, repeatable; RGB: the unnamed one; all: every one both have. By default irradiance, else combined, else RGB")
+        ->allow_extra_args(false);
     parser->add_option("--regions", options->regions, "COLUMNSxROWS of the table of regions")->capture_default_str();
     std::string metrics;
     for (const auto& [name, meaning] : metricNames()) metrics += "\n  " + name + ": " + meaning;
-    parser->add_option("--fail-above", options->failAbove, "metric=value, repeatable: exit code 1 where a layer's metric is above. Metrics:" + metrics)->allow_extra_args(false);
+    parser->add_option("--fail-above", options->failAbove, "metric=value, repeatable: exit code 1 where a layer's metric is above. Metrics:" + metrics)
+        ->allow_extra_args(false);
     parser->add_option("--fail-below", options->failBelow, "metric=value, repeatable: for psnr and ssim")->allow_extra_args(false);
-    parser->add_option("--exposure", options->exposure, "stops for the pictures, LDR-FLIP, PSNR and SSIM; auto: from the reference (0 for PNG)")->capture_default_str();
-    parser->add_option("--flip-exposures", options->flipExposures, "START:STOP:COUNT of HDR-FLIP; auto: from the reference, as its paper does")->capture_default_str();
+    parser->add_option("--exposure", options->exposure, "stops for the pictures, LDR-FLIP, PSNR and SSIM; auto: from the reference (0 for PNG)")
+        ->capture_default_str();
+    parser->add_option("--flip-exposures", options->flipExposures, "START:STOP:COUNT of HDR-FLIP; auto: from the reference, as its paper does")
+        ->capture_default_str();
     parser->add_option("--ppd", options->pixelsPerDegree, "pixels per degree of FLIP's viewer")->capture_default_str();
     parser->add_flag("--allow-nan", options->allowNan, "pixels that are not finite are left out instead of failing");
     parser->add_flag("--all-pixels", options->allPixels, "count pixels where the eye sees nothing, too");

@@ -10,8 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kZBlock = 8;            // pixels along a side of the z-test's blocks
-constexpr float kHeatLimit = 1.0f;    // error maps end at one mean of the reference
+constexpr int kZBlock = 8;          // pixels along a side of the z-test's blocks
+constexpr float kHeatLimit = 1.0f;  // error maps end at one mean of the reference
 
 std::string number(double value, const char* format = "%.4g")
 {
@@ -34,14 +34,22 @@ Image<Vec3> displayed(const Image<Vec3>& picture)
 
 Json poolJson(const FlipPool& pool)
 {
-    return {{"mean", pool.mean}, {"weighted_median", pool.weightedMedian}, {"weighted_quartiles", {pool.firstWeightedQuartile, pool.thirdWeightedQuartile}},
-            {"min", pool.min}, {"max", pool.max}};
+    return {{"mean", pool.mean},
+            {"weighted_median", pool.weightedMedian},
+            {"weighted_quartiles", {pool.firstWeightedQuartile, pool.thirdWeightedQuartile}},
+            {"min", pool.min},
+            {"max", pool.max}};
 }
 
 Json zJson(const ZTest& z)
 {
-    return {{"values", z.values}, {"rms", z.rms}, {"largest", z.largest}, {"beyond_3", z.beyond3}, {"p_value", z.pValue},
-            {"noise_rmse_over_mean", z.noise}, {"differ_without_variance", z.certain}};
+    return {{"values", z.values},
+            {"rms", z.rms},
+            {"largest", z.largest},
+            {"beyond_3", z.beyond3},
+            {"p_value", z.pValue},
+            {"noise_rmse_over_mean", z.noise},
+            {"differ_without_variance", z.certain}};
 }
 
 Json finite(double value)
@@ -172,8 +180,13 @@ Json comparisonJson(const LayerComparison& c)
     if (c.blockZ) json["z_blocks"] = zJson(*c.blockZ);
     json["regions"] = Json::array();
     for (const RegionMetrics& r : c.regions)
-        json["regions"].push_back({{"x", {r.region.x0, r.region.x1}}, {"y", {r.region.y0, r.region.y1}}, {"pixels", r.pixels}, {"mean_reference", r.meanReference},
-                                   {"energy_ratio", finite(r.energyRatio)}, {"rmse_over_mean", finite(r.rmse)}, {"mae_over_mean", finite(r.mae)}});
+        json["regions"].push_back({{"x", {r.region.x0, r.region.x1}},
+                                   {"y", {r.region.y0, r.region.y1}},
+                                   {"pixels", r.pixels},
+                                   {"mean_reference", r.meanReference},
+                                   {"energy_ratio", finite(r.energyRatio)},
+                                   {"rmse_over_mean", finite(r.rmse)},
+                                   {"mae_over_mean", finite(r.mae)}});
     return json;
 }
 
@@ -209,12 +222,13 @@ ComparedLayer comparisonSection(const LayerComparison& c)
                     {"SSIM as shown", number(c.ssim)},
                     {"FLIP mean / weighted median / max", number(c.flip.mean) + " / " + number(c.flip.weightedMedian) + " / " + number(c.flip.max)}};
     if (c.hdrFlip)
-        numbers.rows.push_back({"HDR-FLIP mean / weighted median / max, " + std::to_string(c.flipExposures.count) + " exposures " + number(c.flipExposures.start) +
-                                    " .. " + number(c.flipExposures.stop),
+        numbers.rows.push_back({"HDR-FLIP mean / weighted median / max, " + std::to_string(c.flipExposures.count) + " exposures " +
+                                    number(c.flipExposures.start) + " .. " + number(c.flipExposures.stop),
                                 number(c.hdrFlip->mean) + " / " + number(c.hdrFlip->weightedMedian) + " / " + number(c.hdrFlip->max)});
     if (c.pixelZ) {
         numbers.rows.push_back({"the truth's own noise: RMSE / mean", number(c.pixelZ->noise)});
-        numbers.rows.push_back({"z per pixel: rms, largest, share beyond 3", number(c.pixelZ->rms) + ", " + number(c.pixelZ->largest) + ", " + number(c.pixelZ->beyond3)});
+        numbers.rows.push_back(
+            {"z per pixel: rms, largest, share beyond 3", number(c.pixelZ->rms) + ", " + number(c.pixelZ->largest) + ", " + number(c.pixelZ->beyond3)});
         numbers.rows.push_back({"z per block of 8 x 8 pixels: rms, largest", number(c.blockZ->rms) + ", " + number(c.blockZ->largest)});
     }
     numbers.rows.push_back({"pixels compared", std::to_string(m.pixels)});
@@ -222,8 +236,9 @@ ComparedLayer comparisonSection(const LayerComparison& c)
 
     ReportTable regions{"Regions (errors over the mean of the whole reference)", {"x", "y", "mean reference", "energy ratio", "RMSE", "MAE"}, {}};
     for (const RegionMetrics& r : c.regions)
-        regions.rows.push_back({std::to_string(r.region.x0) + " .. " + std::to_string(r.region.x1), std::to_string(r.region.y0) + " .. " + std::to_string(r.region.y1),
-                                number(r.meanReference), r.pixels ? number(r.energyRatio) : "-", number(r.rmse), number(r.mae)});
+        regions.rows.push_back({std::to_string(r.region.x0) + " .. " + std::to_string(r.region.x1),
+                                std::to_string(r.region.y0) + " .. " + std::to_string(r.region.y1), number(r.meanReference),
+                                r.pixels ? number(r.energyRatio) : "-", number(r.rmse), number(r.mae)});
     section.tables = {numbers, regions};
     return section;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/imageio/image_io.h"
+#include "core/report/comparison.h"
 #include "reference/flip.h"
 #include "reference/metrics.h"
-#include "core/report/comparison.h"
 #include "reference/ztest.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,11 +15,11 @@
 namespace lrsm {
 
 struct CompareSettings {
-    std::optional<float> exposureStops;    ///< for LDR-FLIP, PSNR, SSIM and the pictures; nothing: from the reference
+    std::optional<float> exposureStops;          ///< for LDR-FLIP, PSNR, SSIM and the pictures; nothing: from the reference
     std::optional<FlipExposures> flipExposures;  ///< for HDR-FLIP; nothing: from the reference
     double pixelsPerDegree = kFlipPixelsPerDegree;
     int regionColumns = 4, regionRows = 4;
-    bool sceneReferred = true;             ///< false: display values in [0, 1] (PNG): exposure 0, no HDR-FLIP
+    bool sceneReferred = true;  ///< false: display values in [0, 1] (PNG): exposure 0, no HDR-FLIP
 };
 
 struct LayerComparison {
@@ -31,7 +31,7 @@ struct LayerComparison {
     FlipPool flip;
     std::optional<FlipPool> hdrFlip;
     FlipExposures flipExposures;
-    std::optional<ZTest> pixelZ, blockZ;   ///< when the reference stores variances; blocks of 8 x 8 pixels
+    std::optional<ZTest> pixelZ, blockZ;  ///< when the reference stores variances; blocks of 8 x 8 pixels
 
     Image<Vec3> referenceShown, testShown;  ///< linear, exposed, not clipped
     Image<float> absolute, signedError;     ///< luminance, over the reference's mean

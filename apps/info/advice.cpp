@@ -42,7 +42,8 @@ double frameWork(const SceneAnalysis& analysis, const Settings& settings, const 
 double frameBytes(const SceneAnalysis& analysis, const Settings& settings, const std::vector<int>& layers, int width, int height)
 {
     std::size_t bytes = predictPyramidBytes(settings.voxel) + GBuffer::predictBytes(width, height, analysis.specular);
-    for (const int count : layers) bytes += Rsm::predictBytes(settings.rsm.resolution) + static_cast<std::size_t>(count) * predictLayerBytes(settings.rsm.resolution);
+    for (const int count : layers)
+        bytes += Rsm::predictBytes(settings.rsm.resolution) + static_cast<std::size_t>(count) * predictLayerBytes(settings.rsm.resolution);
     return static_cast<double>(bytes);
 }
 
@@ -116,7 +117,8 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
     int texels = settings.rsm.resolution;
     for (double ratio = coarsest; ratio <= kFineMap && texels > kLeastResolution; ratio *= 2.0) texels /= 2;
     if (texels < settings.rsm.resolution)
-        adviser.add("rsm_resolution", settings.rsm.resolution, texels, brief("LRSM texels are %.2g of the finest tap wide: next to nothing reads the base level", coarsest));
+        adviser.add("rsm_resolution", settings.rsm.resolution, texels,
+                    brief("LRSM texels are %.2g of the finest tap wide: next to nothing reads the base level", coarsest));
 
     int voxels = settings.voxel.resolution;
     float start = settings.cones.startVoxels;
@@ -125,7 +127,8 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
         if (start > 2.0f) start = std::max(2.0f, start - 1.0f);  // near the same length, as the presets have it
     }
     if (voxels == settings.voxel.resolution) return;
-    adviser.add("voxel_resolution", settings.voxel.resolution, voxels, brief("LRSM texels are %.2g voxels wide: the light's map resolves less than the voxels", finest));
+    adviser.add("voxel_resolution", settings.voxel.resolution, voxels,
+                brief("LRSM texels are %.2g voxels wide: the light's map resolves less than the voxels", finest));
     if (start != settings.cones.startVoxels)
         adviser.add("start_voxels", brief("%g", double(settings.cones.startVoxels)), brief("%g", double(start)), "goes with the wider voxels");
 }

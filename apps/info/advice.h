@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 #include "lrsm/layers.h"
 
 #include <cstddef>
@@ -38,12 +38,12 @@ MergedLight mergedLight(const Lrsm& lrsm, int level);
 /// One light's map, as cones read it.
 struct LightAnalysis {
     std::string name;
-    std::uint64_t texels = 0;     ///< RSM texels that show a surface
-    std::uint64_t litTexels = 0;  ///< of these, with any radiance: a light without one builds no layer and is sampled by nothing
-    std::vector<DepthCluster> clusters;  ///< of lit texels, parted by partedGap of the finest tap
+    std::uint64_t texels = 0;               ///< RSM texels that show a surface
+    std::uint64_t litTexels = 0;            ///< of these, with any radiance: a light without one builds no layer and is sampled by nothing
+    std::vector<DepthCluster> clusters;     ///< of lit texels, parted by partedGap of the finest tap
     double nDotLMin = 0.0, nDotLMax = 0.0;  ///< of lit texels
-    double texelSize = 0.0;         ///< metres, edge of an LRSM base texel (two RSM texels) at the lit surfaces, median
-    double texelSizeLargest = 0.0;  ///< 95th percentile
+    double texelSize = 0.0;                 ///< metres, edge of an LRSM base texel (two RSM texels) at the lit surfaces, median
+    double texelSizeLargest = 0.0;          ///< 95th percentile
     MergedLight merged;
     int depthSlices = 0, normalSlices = 0;  ///< that hold a lit texel
     int layers = 0;                         ///< that do, and are kept
@@ -51,14 +51,14 @@ struct LightAnalysis {
 
 struct SceneAnalysis {
     std::vector<LightAnalysis> lights;
-    double voxelSize = 0.0;   ///< metres
-    double finestTap = 0.0;   ///< metres, narrowest tap of any diffuse cone
-    double mapTap = 0.0;      ///< metres, the tap at whose LRSM level layers are merged for comparison: kMapTapVoxels voxels
+    double voxelSize = 0.0;                    ///< metres
+    double finestTap = 0.0;                    ///< metres, narrowest tap of any diffuse cone
+    double mapTap = 0.0;                       ///< metres, the tap at whose LRSM level layers are merged for comparison: kMapTapVoxels voxels
     int voxelLevels = 0, voxelLevelsRead = 0;  ///< of the pyramid; how many of them a diffuse cone can read
-    double coneStart = 0.0;   ///< metres to a cone's first voxel tap
-    double pixelFootprint[3] = {};  ///< metres, edge of a pixel across the viewing axis at the visible surfaces: 5th, 50th, 95th percentile
-    double triangleEdge[3] = {};    ///< metres, shortest edge of the scene's triangles, each weighted by its area: the same percentiles
-    double coveredFraction = 0.0;   ///< of the picture
+    double coneStart = 0.0;                    ///< metres to a cone's first voxel tap
+    double pixelFootprint[3] = {};             ///< metres, edge of a pixel across the viewing axis at the visible surfaces: 5th, 50th, 95th percentile
+    double triangleEdge[3] = {};               ///< metres, shortest edge of the scene's triangles, each weighted by its area: the same percentiles
+    double coveredFraction = 0.0;              ///< of the picture
     bool specular = false;
 };
 
@@ -70,9 +70,9 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
 
 /// One change of one setting that the scene allows.
 struct Advice {
-    std::string key, from, to;  ///< as in --set
-    std::string why;            ///< one sentence with the numbers that it rests on
-    bool bitsEqual = false;     ///< the picture keeps every bit; otherwise docs/requirements.md says what the rule has cost
+    std::string key, from, to;                                    ///< as in --set
+    std::string why;                                              ///< one sentence with the numbers that it rests on
+    bool bitsEqual = false;                                       ///< the picture keeps every bit; otherwise docs/requirements.md says what the rule has cost
     double predictedTimeRatio = 1.0, predictedMemoryRatio = 1.0;  ///< of the whole frame, after over before, this change alone; 1: none expected
 };
 

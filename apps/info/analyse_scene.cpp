@@ -1,12 +1,12 @@
+#include "apps/info/advice.h"
 #include "conetrace/frame/cones.h"
 #include "conetrace/frame/gbuffer.h"
 #include "conetrace/frame/schedule.h"
 #include "core/base/elementary.h"
 #include "core/base/float_state.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/check_scene.h"
+#include "core/settings/settings_table.h"
 #include "lrsm/rsm.h"
-#include "apps/info/advice.h"
 #include "voxel/bit_grid.h"
 
 #include <algorithm>
@@ -212,7 +212,8 @@ MergedLight mergedLight(const Lrsm& lrsm, int level)
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             for (int layer = 0; layer < lrsm.layers(); ++layer)
-                texel[std::size_t(layer)] = layerTexel(lrsm.level(layer, level)[std::size_t(y) * std::size_t(n) + std::size_t(x)], lrsm.ranges[std::size_t(layer)], range);
+                texel[std::size_t(layer)] =
+                    layerTexel(lrsm.level(layer, level)[std::size_t(y) * std::size_t(n) + std::size_t(x)], lrsm.ranges[std::size_t(layer)], range);
             for (std::size_t i = 0; i < texel.size(); ++i) {
                 const LayerTexel& one = texel[i];
                 if (!(one.radiance > 0.0)) continue;

@@ -66,8 +66,8 @@ void printLight(std::ostream& out, std::size_t index, const LightAnalysis& light
         out << "lights nothing: no layer, no sample\n";
         return;
     }
-    out << percent(static_cast<double>(light.litTexels) / static_cast<double>(light.texels)) << " of the map's surface is lit, "
-        << light.clusters.size() << (light.clusters.size() == 1 ? " depth cluster, " : " depth clusters, ") << light.layers << " layers kept\n"
+    out << percent(static_cast<double>(light.litTexels) / static_cast<double>(light.texels)) << " of the map's surface is lit, " << light.clusters.size()
+        << (light.clusters.size() == 1 ? " depth cluster, " : " depth clusters, ") << light.layers << " layers kept\n"
         << "    LRSM texel " << length(light.texelSize) << ", " << ratio(light.texelSize / analysis.finestTap) << " of the finest tap\n"
         << "    light that moves if read through one depth layer " << percent(light.merged.depth) << ", through one <n.l> layer "
         << percent(light.merged.normal) << "\n";
@@ -77,7 +77,7 @@ void printLight(std::ostream& out, std::size_t index, const LightAnalysis& light
 
 Json analysisJson(const SceneAnalysis& analysis)
 {
-    const auto triple = [](const double (&values)[3]) { return Json{values[0], values[1], values[2]}; };
+    const auto triple = [](const double(&values)[3]) { return Json{values[0], values[1], values[2]}; };
     Json json = {{"voxel_size", analysis.voxelSize},
                  {"finest_tap", analysis.finestTap},
                  {"voxel_levels", analysis.voxelLevels},

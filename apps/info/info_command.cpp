@@ -1,14 +1,14 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
-#include "apps/info/describe_analysis.h"
 #include "apps/common/memory.h"
+#include "apps/info/describe_analysis.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
+#include "core/settings/settings_table.h"
 
 #include <iostream>
 #include <memory>

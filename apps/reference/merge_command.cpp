@@ -54,7 +54,9 @@ void addCounts(Json& json, const Json& other, const std::string& key)
 int runMerge(const MergeArguments& options)
 {
     if (options.output.empty()) throw InputError("merge", "needs -o FOLDER");
-    { const OutputFolder writable(options.output); }
+    {
+        const OutputFolder writable(options.output);
+    }
 
     Checkpoint merged = readFinished(options.folders[0]);
     Json json = readFrameJson(options.folders[0]);

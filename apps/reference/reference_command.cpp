@@ -61,7 +61,8 @@ void requireBeginning(const ReferenceState& state, const SampleRange& range, con
     std::vector<SampleRange> there = state.finished() ? state.sums.ranges : state.base.ranges;
     if (!state.finished()) there.push_back(state.target);
     if (there.front().begin != range.begin || there.back().end > range.end)
-        throw InputError(place, "holds samples " + describeRanges(there) + "; --resume can add to their end, but " + describeRanges({range}) + " was asked for");
+        throw InputError(place,
+                         "holds samples " + describeRanges(there) + "; --resume can add to their end, but " + describeRanges({range}) + " was asked for");
 }
 
 /// The samples already in the folder, if there are any to go on from.
@@ -100,7 +101,9 @@ int runReference(const ReferenceArguments& options)
             throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
         exposure = stops;
     }
-    { const OutputFolder writable(options.output); }  // fails now rather than after hours
+    {
+        const OutputFolder writable(options.output);
+    }  // fails now rather than after hours
 
     const ThreadLimit threads(options.threads);
     const Scene scene = loadChosenScene(options);
@@ -114,8 +117,10 @@ int runReference(const ReferenceArguments& options)
     const PathTracer tracer(scene, camera, settings);
 
     const CatchInterrupts catching;
-    const TraceOptions trace{.folder = options.output, .checkpointSeconds = options.checkpointSeconds,
-                             .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); }, .stop = &catching.asked()};
+    const TraceOptions trace{.folder = options.output,
+                             .checkpointSeconds = options.checkpointSeconds,
+                             .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); },
+                             .stop = &catching.asked()};
     ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(range);
     const bool complete = traceRange(tracer, state, range, checkpoint, trace);
     progress.clear();
@@ -130,7 +135,9 @@ int runReference(const ReferenceArguments& options)
     if (options.bareLoop) {
         const BareLoop bare = tracer.timeBareLoop(std::max<std::size_t>(1, tracer.primary().covered.texels.size() / 65536));
         const double rate = bare.seconds > 0.0 ? double(bare.rays) / bare.seconds : 0.0;
-        json["bare_loop"] = {{"rays", bare.rays}, {"seconds", bare.seconds}, {"million_per_second", rate * 1e-6},
+        json["bare_loop"] = {{"rays", bare.rays},
+                             {"seconds", bare.seconds},
+                             {"million_per_second", rate * 1e-6},
                              {"ratio", seconds > 0.0 && rate > 0.0 ? double(rays.total()) / seconds / rate : 0.0}};
     }
     OutputFolder folder(options.output);
@@ -163,10 +170,12 @@ Command addReference(CLI::App& program)
     parser->add_option("-o,--output", options->output, "folder for the results");
     parser->add_option("--spp", options->spp, "samples a pixel: the range 0:N")->capture_default_str();
     parser->add_option("--samples", options->samples, "A:B: only samples A .. B-1, to be merged with others (lrsm merge)");
-    parser->add_option("--model", options->model, "single: one diffuse bounce, what LRSM sets out to compute; full: every bounce, every BRDF")->capture_default_str();
+    parser->add_option("--model", options->model, "single: one diffuse bounce, what LRSM sets out to compute; full: every bounce, every BRDF")
+        ->capture_default_str();
     parser->add_option("--specular-aperture", options->specularAperture, "degrees: adds the layer specular.cone, the mean radiance over this cone");
     parser->add_option("--seed", options->seed, "another seed gives an independent picture")->capture_default_str();
-    parser->add_option("--block", options->block, "samples stratified against each other, a power of two; the variance is taken over blocks")->capture_default_str();
+    parser->add_option("--block", options->block, "samples stratified against each other, a power of two; the variance is taken over blocks")
+        ->capture_default_str();
     parser->add_flag("--resume", options->resume, "continue what the folder holds, to the same bits; with a larger --spp, add to it");
     parser->add_option("--checkpoint-seconds", options->checkpointSeconds, "how often samples.bin is written; a kill loses no more")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();

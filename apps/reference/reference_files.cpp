@@ -64,8 +64,8 @@ SeenLayers seenLayers(const PrimaryHits& primary)
 SeenLayers readSeenLayers(const std::string& exrPath)
 {
     const LayeredImage image = readImage(exrPath);
-    return {rgbLayer(image, "direct", exrPath), rgbLayer(image, "albedo", exrPath), rgbLayer(image, "normal", exrPath),
-            rgbLayer(image, "position", exrPath), scalarLayer(image, "depth", exrPath)};
+    return {rgbLayer(image, "direct", exrPath), rgbLayer(image, "albedo", exrPath), rgbLayer(image, "normal", exrPath), rgbLayer(image, "position", exrPath),
+            scalarLayer(image, "depth", exrPath)};
 }
 
 SampleRange parseSamples(const std::string& text)

@@ -14,7 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-const char* modelName(Transport transport) { return transport == Transport::full ? "full" : "single"; }
+const char* modelName(Transport transport)
+{
+    return transport == Transport::full ? "full" : "single";
+}
 
 /// Renders the samples of one state, writing checkpoints; false when interrupted.
 class Runner {
@@ -28,7 +31,8 @@ class Runner {
     {
         while (!tracer_.advance(state, Clock::now() + std::chrono::milliseconds(200), options_.stop)) {
             show(state);
-            const bool stopped = options_.stop && *options_.stop, due = std::chrono::duration<double>(Clock::now() - saved_).count() >= options_.checkpointSeconds;
+            const bool stopped = options_.stop && *options_.stop,
+                       due = std::chrono::duration<double>(Clock::now() - saved_).count() >= options_.checkpointSeconds;
             if ((due || stopped) && !options_.folder.empty()) save(state);
             if (stopped) return false;
         }
@@ -68,8 +72,8 @@ class Runner {
 
 Json speedJson(const RayCounts& rays, double seconds)
 {
-    return {{"eye", rays.eye}, {"bounce", rays.bounce}, {"light", rays.light}, {"total", rays.total()}, {"seconds", seconds},
-            {"million_per_second", seconds > 0.0 ? double(rays.total()) / seconds * 1e-6 : 0.0}};
+    return {{"eye", rays.eye},       {"bounce", rays.bounce}, {"light", rays.light},
+            {"total", rays.total()}, {"seconds", seconds},    {"million_per_second", seconds > 0.0 ? double(rays.total()) / seconds * 1e-6 : 0.0}};
 }
 
 }  // namespace
@@ -103,7 +107,9 @@ Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camer
     Json json = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"command", "reference"}, {"size", {settings.width, settings.height}}};
     json["samples"] = state.sums.sampleCount();
     json["sample_ranges"] = describeRanges(state.sums.ranges);
-    json["settings"] = {{"model", modelName(settings.transport)}, {"seed", settings.seed}, {"block", 1 << settings.blockBits},
+    json["settings"] = {{"model", modelName(settings.transport)},
+                        {"seed", settings.seed},
+                        {"block", 1 << settings.blockBits},
                         {"specular_aperture_degrees", settings.specularApertureDegrees}};
     json["scene"] = sceneJson(scene, sceneHash);
     json["camera"] = cameraJson(camera);

@@ -15,7 +15,7 @@ namespace lrsm {
 Identity identifyReference(const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash);
 
 struct TraceOptions {
-    std::string folder;                      ///< of samples.bin; empty: no checkpoints
+    std::string folder;  ///< of samples.bin; empty: no checkpoints
     double checkpointSeconds = 60.0;
     std::function<void(const std::string& text, double fraction)> show = {};  ///< told the time left, five times a second
     const std::atomic<bool>* stop = nullptr;
@@ -26,6 +26,7 @@ struct TraceOptions {
 bool traceRange(const PathTracer& tracer, ReferenceState& state, const SampleRange& range, Checkpoint& checkpoint, const TraceOptions& options);
 
 /// frame.json of a finished reference.
-nlohmann::ordered_json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer, const ReferenceState& state);
+nlohmann::ordered_json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer,
+                                     const ReferenceState& state);
 
 }  // namespace lrsm

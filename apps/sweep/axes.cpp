@@ -24,7 +24,10 @@ std::string textOf(const Json& value, const std::string& place)
     return number == std::floor(number) && std::abs(number) < 1e9 ? std::to_string(static_cast<long long>(number)) : value.dump();
 }
 
-void addPart(std::string& label, const std::string& part) { label += (label.empty() ? "" : " ") + part; }
+void addPart(std::string& label, const std::string& part)
+{
+    label += (label.empty() ? "" : " ") + part;
+}
 
 /// False, and the reason is kept, where the combination has no meaning.
 bool isMeaningful(const NamedSettings& named, std::vector<std::string>* refused)
@@ -106,11 +109,11 @@ std::vector<NamedSettings> combine(const Settings& base, const std::vector<Axis>
 std::vector<Axis> searchAxes()
 {
     std::vector<Axis> axes;
-    for (const char* text : {"cone_count=1,2,3,4,6,9,12,16,24,32,48", "sets_per_pixel=1,2", "voxel_resolution=128,256,512,1024",
-                             "rsm_resolution=256,512,1024,2048", "depth_layers=1,2,3,4", "normal_layers=1,2,3", "step=1,0.75,0.5,0.35",
-                             "start_voxels=1.5,2,3,4", "emitter_delay_taps=1.5,2,2.5,3.5", "emitter_slant_cap=1,0.5,0.25", "rsm_level_bias=0,-0.5,-1",
-                             "aperture_scale=1,0.7,0.5,0.35", "opacity_axes=isotropic,directional", "voxelization=thin,conservative",
-                             "transmittance_cutoff=0.1,0.03,0.01", "voxel_level_bias=-1.5,-2,-2.5"})
+    for (const char* text :
+         {"cone_count=1,2,3,4,6,9,12,16,24,32,48", "sets_per_pixel=1,2", "voxel_resolution=128,256,512,1024", "rsm_resolution=256,512,1024,2048",
+          "depth_layers=1,2,3,4", "normal_layers=1,2,3", "step=1,0.75,0.5,0.35", "start_voxels=1.5,2,3,4", "emitter_delay_taps=1.5,2,2.5,3.5",
+          "emitter_slant_cap=1,0.5,0.25", "rsm_level_bias=0,-0.5,-1", "aperture_scale=1,0.7,0.5,0.35", "opacity_axes=isotropic,directional",
+          "voxelization=thin,conservative", "transmittance_cutoff=0.1,0.03,0.01", "voxel_level_bias=-1.5,-2,-2.5"})
         axes.push_back(parseAxis(text));
     return axes;
 }

@@ -121,8 +121,10 @@ CombinedCases combineCases(const std::vector<CaseRows>& cases)
             if (balanced->error.noise > 0.0 && balanced->error.net() > 0.0) noise.push_back(balanced->error.noise / balanced->error.net());
         }
     if (all.cases.empty()) return all;
-    all.settings = combineRows(all.cases, base, all.cases.front()->settings, [](const CaseRows& one, const Measurement& row) { return findSettings(one, row.settings); });
-    all.pathTracer = combineRows(all.cases, base, all.cases.front()->pathTracer, [](const CaseRows& one, const Measurement& row) { return findSamples(one, row.samples); });
+    all.settings =
+        combineRows(all.cases, base, all.cases.front()->settings, [](const CaseRows& one, const Measurement& row) { return findSettings(one, row.settings); });
+    all.pathTracer =
+        combineRows(all.cases, base, all.cases.front()->pathTracer, [](const CaseRows& one, const Measurement& row) { return findSamples(one, row.samples); });
     all.noise = noise.empty() ? 0.0 : geometricMean(noise);
     return all;
 }

@@ -11,7 +11,7 @@ namespace lrsm {
 
 /// The rows of one case (scene, camera, size, truth). Points into the rows that it was made from.
 struct CaseRows {
-    std::string name, caseKey;  ///< name: the scene's; with size and key where two cases share it
+    std::string name, caseKey;                   ///< name: the scene's; with size and key where two cases share it
     std::vector<const Measurement*> settings;    ///< LRSM, in the order of the rows
     std::vector<const Measurement*> pathTracer;  ///< by rising samples
 };
@@ -34,10 +34,10 @@ struct CombinedRow {
     double error = 1.0, cost = 1.0, bytes = 1.0;
 };
 struct CombinedCases {
-    std::vector<const CaseRows*> cases;    ///< those with `balanced`, without which nothing is relative
-    std::vector<CombinedRow> settings;     ///< measured in each of them, in the order of the first case
-    std::vector<CombinedRow> pathTracer;   ///< by rising samples; `bytes` means nothing
-    double noise = 0.0;                    ///< of the truths, in the same unit as `error`
+    std::vector<const CaseRows*> cases;   ///< those with `balanced`, without which nothing is relative
+    std::vector<CombinedRow> settings;    ///< measured in each of them, in the order of the first case
+    std::vector<CombinedRow> pathTracer;  ///< by rising samples; `bytes` means nothing
+    double noise = 0.0;                   ///< of the truths, in the same unit as `error`
 };
 /// Points into `cases`.
 CombinedCases combineCases(const std::vector<CaseRows>& cases);

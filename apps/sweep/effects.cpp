@@ -1,7 +1,7 @@
 #include "apps/sweep/effects.h"
 
-#include "core/settings/settings_table.h"
 #include "apps/sweep/relative.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ std::string baseNameOf(const Measurement& row)
     return single ? "balanced" : "";
 }
 
-/// A value that means nothing without another ("density_k=4 estimator=paper") is held against the row that has that other alone: its label's first word is the value.
-/// nullptr where it stands alone, or where that row was not measured.
+/// A value that means nothing without another ("density_k=4 estimator=paper") is held against the row that has that other alone: its label's first word is the
+/// value. nullptr where it stands alone, or where that row was not measured.
 const Measurement* companionRow(const CaseRows& rows, const Measurement& row, const Settings& base)
 {
     const std::vector<SettingDifference> changed = differences(base, row.settings);
@@ -126,10 +126,10 @@ bool comesBefore(const Effect& a, const Effect& b)
 {
     if (a.kind != b.kind) return a.kind < b.kind;
     switch (a.kind) {
-        case EffectKind::buys: return a.percentPerMs > b.percentPerMs;
-        case EffectKind::saves: return a.percentPerMs < b.percentPerMs;
-        case EffectKind::changesNothing: return a.cost < b.cost;
-        default: return a.error < b.error;
+    case EffectKind::buys: return a.percentPerMs > b.percentPerMs;
+    case EffectKind::saves: return a.percentPerMs < b.percentPerMs;
+    case EffectKind::changesNothing: return a.cost < b.cost;
+    default: return a.error < b.error;
     }
 }
 

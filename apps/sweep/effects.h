@@ -10,22 +10,22 @@
 namespace lrsm {
 
 enum class EffectKind {
-    winsBoth,        ///< less error, and no more time
-    buys,            ///< less error for more time
-    saves,           ///< less time for more error
-    losesBoth,       ///< no less error, and no less time
-    changesNothing   ///< equal bits of irradiance in every case
+    winsBoth,       ///< less error, and no more time
+    buys,           ///< less error for more time
+    saves,          ///< less time for more error
+    losesBoth,      ///< no less error, and no less time
+    changesNothing  ///< equal bits of irradiance in every case
 };
 
 /// A value against its base, over the cases that have both. Changes are ratio - 1 with the ratio a geometric mean over the cases.
 struct Effect {
-    std::string label, base;        ///< "cone_count=4", "balanced"; "density_k=4", "balanced estimator=paper": with what the value needs beside it
-    std::string assignment;         ///< the label's first "key=value" as TriedValue writes it; empty where several values change
+    std::string label, base;  ///< "cone_count=4", "balanced"; "density_k=4", "balanced estimator=paper": with what the value needs beside it
+    std::string assignment;   ///< the label's first "key=value" as TriedValue writes it; empty where several values change
     EffectKind kind = EffectKind::losesBoth;
-    std::size_t cases = 0, changed = 0;  ///< measured in; where a bit of the irradiance differs
+    std::size_t cases = 0, changed = 0;           ///< measured in; where a bit of the irradiance differs
     double error = 0.0, cost = 0.0, bytes = 0.0;  ///< changes; -0.1: 10 % less
-    double worstError = 0.0;        ///< largest change of error in one case
-    double milliseconds = 0.0;      ///< change of cost in processor time, mean over the cases, each times `unit`
+    double worstError = 0.0;                      ///< largest change of error in one case
+    double milliseconds = 0.0;                    ///< change of cost in processor time, mean over the cases, each times `unit`
     /// `buys`, `saves`: 100 |error| / |milliseconds|, percent of the error a millisecond: what a millisecond buys, or what a millisecond saved is paid with.
     double percentPerMs = 0.0;
 };
@@ -47,7 +47,7 @@ CalibrationUnit calibrationUnit(const std::vector<Measurement>& rows);
 /// A value of a setting that was tried beside other values of it.
 struct TriedValue {
     std::string key, value;
-    std::size_t rows = 0;                        ///< with this value, over all cases
+    std::size_t rows = 0;                          ///< with this value, over all cases
     std::size_t timeFronts = 0, memoryFronts = 0;  ///< cases that have it on their front
     double closest = 0.0;  ///< how much dearer its best row is than the front's point of at most its error: least ratio - 1 over rows and cases
 };

@@ -3,10 +3,10 @@
 #include "conetrace/pass_log.h"
 #include "core/base/errors.h"
 #include "core/base/hash.h"
-#include "core/settings/settings_table.h"
 #include "core/imageio/display.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/scene_hash.h"
+#include "core/settings/settings_table.h"
 #include "reference/flip.h"
 #include "reference/ztest.h"
 
@@ -117,7 +117,8 @@ std::string caseKeyOf(const SceneCase& sceneCase)
     numbers.insert(numbers.end(), {eye.perspective ? eye.verticalFov : eye.verticalExtent, eye.nearPlane});
     Sha256 hash;
     hash.add(sceneCase.sceneSha256.empty() ? hashScene(sceneCase.scene) : sceneCase.sceneSha256).add(numbers);
-    hash.add(std::string(eye.perspective ? " perspective " : " orthographic ") + std::to_string(sceneCase.width) + "x" + std::to_string(sceneCase.height) + " ");
+    hash.add(std::string(eye.perspective ? " perspective " : " orthographic ") + std::to_string(sceneCase.width) + "x" + std::to_string(sceneCase.height) +
+             " ");
     return hash.add(sceneCase.truth.sha256).hex().substr(0, kKeyDigits);
 }
 
@@ -154,17 +155,46 @@ Settings Calibration::settings()
     Settings s;
     s.voxel = {.resolution = 128, .mode = Voxelization::thin, .mipFilter = MipFilter::mean, .axes = OpacityAxes::directional, .storage = Storage::gpu};
     s.rsm = {.resolution = 256, .storage = Storage::gpu, .halfRounding = HalfRounding::d3d};
-    s.layers = {.depthLayers = 2, .normalLayers = 2, .overlap = 0.0f, .fitRanges = true, .outermostDecay = false, .dropEmpty = true,
-                .storage = Storage::gpu, .halfRounding = HalfRounding::d3d};
+    s.layers = {.depthLayers = 2,
+                .normalLayers = 2,
+                .overlap = 0.0f,
+                .fitRanges = true,
+                .outermostDecay = false,
+                .dropEmpty = true,
+                .storage = Storage::gpu,
+                .halfRounding = HalfRounding::d3d};
     s.direct = {.shadows = Shadows::hard, .depthBiasTexels = 0.75f, .shadowConeApertureDegrees = 2.0f};
-    s.cones = {.estimator = Estimator::slab, .count = 6, .apertureScale = 0.5f, .rotation = Rotation::strata, .filter = true, .setsPerPixel = 1,
-               .step = 0.5f, .startVoxels = 3.0f, .normalOffsetVoxels = 1.0f, .minDiameterVoxels = 1.0f, .push = 0.0f, .transmittanceCutoff = 0.01f,
+    s.cones = {.estimator = Estimator::slab,
+               .count = 6,
+               .apertureScale = 0.5f,
+               .rotation = Rotation::strata,
+               .filter = true,
+               .setsPerPixel = 1,
+               .step = 0.5f,
+               .startVoxels = 3.0f,
+               .normalOffsetVoxels = 1.0f,
+               .minDiameterVoxels = 1.0f,
+               .push = 0.0f,
+               .transmittanceCutoff = 0.01f,
                .maxSteps = 1024,
-               .opacity = OpacityModel::density, .densityK = 2.0f, .transmittance = TransmittanceModel::linear, .subtractOwnPlane = false,
-               .voxelLevelBias = -2.0f, .emitterDelayTaps = 2.0f, .emitterDelayVoxels = 0.75f, .emitterSlantCap = 0.5f,
-               .layerSelection = LayerSelection::touched, .backface = Backface::step, .vRadiusScale = 1.0f, .rsmLevelBias = 0.0f,
-               .rsmMinLevel = 0.0f, .gaussian = GaussianMethod::polynomial, .gaussianTableSize = 1024, .filterFraction = FilterFraction::exact,
-               .specularAperture = SpecularAperture::roughness, .specularApertureDegrees = 10.0f};
+               .opacity = OpacityModel::density,
+               .densityK = 2.0f,
+               .transmittance = TransmittanceModel::linear,
+               .subtractOwnPlane = false,
+               .voxelLevelBias = -2.0f,
+               .emitterDelayTaps = 2.0f,
+               .emitterDelayVoxels = 0.75f,
+               .emitterSlantCap = 0.5f,
+               .layerSelection = LayerSelection::touched,
+               .backface = Backface::step,
+               .vRadiusScale = 1.0f,
+               .rsmLevelBias = 0.0f,
+               .rsmMinLevel = 0.0f,
+               .gaussian = GaussianMethod::polynomial,
+               .gaussianTableSize = 1024,
+               .filterFraction = FilterFraction::exact,
+               .specularAperture = SpecularAperture::roughness,
+               .specularApertureDegrees = 10.0f};
     s.force = {.everything = false};
     return s;
 }
@@ -190,8 +220,7 @@ Measured measureSettings(const SceneCase& sceneCase, const TruthFigures& figures
     const int repeat = std::max(1, options.repeat);
     RenderOptions renderOptions{.width = sceneCase.width, .height = sceneCase.height, .hashPasses = false, .progress = {}, .replaceDiffuse = {}};
     int done = 0;
-    if (options.progress)
-        renderOptions.progress = [&](const std::string&, double fraction) { options.progress((done + fraction) / repeat); };
+    if (options.progress) renderOptions.progress = [&](const std::string&, double fraction) { options.progress((done + fraction) / repeat); };
 
     Measured measured{rowOf(sceneCase), {}};
     Measurement& row = measured.row;

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "apps/sweep/instructions.h"
+#include "apps/sweep/measurement.h"
 #include "core/scene/scene.h"
 #include "reference/metrics.h"
 #include "reference/path_trace.h"
-#include "apps/sweep/instructions.h"
-#include "apps/sweep/measurement.h"
 
 #include <atomic>
 #include <functional>
@@ -19,7 +19,7 @@ struct Truth {
     Image<Vec3> irradiance, variance;  ///< single bounce; variance of the mean
     PixelMask covered;                 ///< pixels that show a surface
     std::uint64_t samples = 0;
-    std::string sha256;                ///< of the samples' identity and number: part of the case's key
+    std::string sha256;  ///< of the samples' identity and number: part of the case's key
 };
 /// From the sums' picture and what the tracer's eye saw. InputError naming `place` where a variance is missing (fewer than two blocks).
 Truth truthOf(const ReferenceFrame& frame, const PixelMask& covered, const std::string& sha256, const std::string& place);
@@ -39,7 +39,7 @@ std::string rowKeyOf(const std::string& caseKey, std::uint64_t pathTracerSamples
 
 /// The noise floor and the exposure that FLIP uses, once a case.
 struct TruthFigures {
-    double noise = 0.0;         ///< RMSE of the truth itself over its mean
+    double noise = 0.0;  ///< RMSE of the truth itself over its mean
     float exposureStops = 0.0f;
 };
 TruthFigures figuresOf(const Truth& truth);
@@ -63,14 +63,14 @@ class Calibration {
 };
 
 struct MeasureOptions {
-    int repeat = 1;                         ///< frames timed; the calibration frame runs before each
+    int repeat = 1;  ///< frames timed; the calibration frame runs before each
     std::function<void(double fraction)> progress = {};
     const InstructionCounter* instructions = nullptr;  ///< opened before the first parallel work
     const std::atomic<bool>* stop = nullptr;           ///< ends the path tracer between two pictures
 };
 
 struct Measured {
-    Measurement row;            ///< label, kind and base are the caller's to fill in
+    Measurement row;  ///< label, kind and base are the caller's to fill in
     Image<Vec3> irradiance;
 };
 /// Nothing of the frame is hashed but the irradiance. The calibration frame runs before each frame and after the last. Throws what renderFrame throws.

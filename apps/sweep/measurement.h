@@ -23,17 +23,17 @@ struct PictureError {
     double energy = 1.0;  ///< sum of the picture over sum of the truth
     double rmse = 0.0;    ///< as measured, the truth's noise included
     double mae = 0.0;
-    double flip = 0.0;    ///< mean LDR-FLIP at the exposure chosen from the truth
-    double noise = 0.0;   ///< RMSE of the truth itself, from its stored variance: no rmse below it means anything
+    double flip = 0.0;   ///< mean LDR-FLIP at the exposure chosen from the truth
+    double noise = 0.0;  ///< RMSE of the truth itself, from its stored variance: no rmse below it means anything
     /// sqrt(rmse^2 - noise^2), and never below the noise floor's own uncertainty, `noise` / 4: what is claimed.
     double net() const;
 };
 
 enum class RowKind {
-    preset,      ///< a preset as it is
-    axis,        ///< one or more settings taken from axes
-    search,      ///< visited by the front search
-    pathTracer   ///< the honest alternative: `samples` paths a pixel
+    preset,     ///< a preset as it is
+    axis,       ///< one or more settings taken from axes
+    search,     ///< visited by the front search
+    pathTracer  ///< the honest alternative: `samples` paths a pixel
 };
 
 /// "preset", "axis", "search", "path_tracer".
@@ -41,35 +41,35 @@ const char* rowKindName(RowKind kind);
 
 /// Where a row's thumbnail is: thumbnails/<key>.png beside the rows.
 struct Measurement {
-    std::string scene;        ///< name shown: built-in or stem of the file
-    std::string caseKey;      ///< 16 hex digits of scene, camera, size, truth: rows of one case are comparable
-    std::string key;          ///< 16 hex digits of the case, settings, samples and version: no two rows of a sweep share it
-    std::string label;        ///< "balanced", "cone_count=4", "path tracer 16 spp"; what to call it
+    std::string scene;    ///< name shown: built-in or stem of the file
+    std::string caseKey;  ///< 16 hex digits of scene, camera, size, truth: rows of one case are comparable
+    std::string key;      ///< 16 hex digits of the case, settings, samples and version: no two rows of a sweep share it
+    std::string label;    ///< "balanced", "cone_count=4", "path tracer 16 spp"; what to call it
     RowKind kind = RowKind::axis;
-    std::string base;         ///< preset that the axis was laid around; empty otherwise
+    std::string base;           ///< preset that the axis was laid around; empty otherwise
     std::uint64_t samples = 0;  ///< paths a pixel of the path tracer; 0: LRSM
-    Settings settings;        ///< of an LRSM row
+    Settings settings;          ///< of an LRSM row
     int width = 0, height = 0;
     std::uint64_t truthSamples = 0;  ///< paths a pixel of the truth
 
     PictureError error;
 
-    RepeatedTime frame;       ///< wall time of all passes
-    double frameCpu = 0.0;    ///< median processor time of all passes, all threads, ms
+    RepeatedTime frame;                                        ///< wall time of all passes
+    double frameCpu = 0.0;                                     ///< median processor time of all passes, all threads, ms
     std::vector<std::pair<std::string, RepeatedTime>> passes;  ///< by name as in PassReport ("voxelize", ..., "cones"); lights summed ("rsm", "lrsm")
-    double calibrationCpu = 0.0;  ///< processor time of the calibration frame run beside this row, ms
-    double cost = 0.0;        ///< frameCpu / calibrationCpu: time in calibration frames, the figure that carries between runs and machines
-    ConeCounts counts;        ///< of one frame; 0 for the path tracer
-    std::uint64_t rays = 0;   ///< path tracer
+    double calibrationCpu = 0.0;                               ///< processor time of the calibration frame run beside this row, ms
+    double cost = 0.0;                          ///< frameCpu / calibrationCpu: time in calibration frames, the figure that carries between runs and machines
+    ConeCounts counts;                          ///< of one frame; 0 for the path tracer
+    std::uint64_t rays = 0;                     ///< path tracer
     std::optional<std::uint64_t> instructions;  ///< of one frame, user mode, where the machine counts them
-    std::size_t bytes = 0, gpuBytes = 0;  ///< voxels, RSMs, LRSMs and G-buffer together, held; in the GPU's formats
-    std::string irradianceSha256;  ///< equal hashes: equal bits
+    std::size_t bytes = 0, gpuBytes = 0;        ///< voxels, RSMs, LRSMs and G-buffer together, held; in the GPU's formats
+    std::string irradianceSha256;               ///< equal hashes: equal bits
 };
 
-/// A flat object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min, frame_ms_spread, frame_cpu_ms,
-/// calibration_cpu_ms, cost, PASS_ms, PASS_ms_min, PASS_ms_spread for each of measuredPasses(), cones, cone_steps, voxel_taps, lrsm_samples, rays, instructions (null when unknown),
-/// bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer). Numbers that are not finite, and the times of passes
-/// that did not run, are null too; they read back as NaN and as no pass. Reads back to the same bits.
+/// A flat object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min,
+/// frame_ms_spread, frame_cpu_ms, calibration_cpu_ms, cost, PASS_ms, PASS_ms_min, PASS_ms_spread for each of measuredPasses(), cones, cone_steps, voxel_taps,
+/// lrsm_samples, rays, instructions (null when unknown), bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
+/// Numbers that are not finite, and the times of passes that did not run, are null too; they read back as NaN and as no pass. Reads back to the same bits.
 nlohmann::ordered_json measurementJson(const Measurement& row);
 /// Throws InputError beginning with `place`.
 Measurement measurementFromJson(const nlohmann::ordered_json& json, const std::string& place);

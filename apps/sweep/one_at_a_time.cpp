@@ -1,6 +1,6 @@
+#include "apps/sweep/axes.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
-#include "apps/sweep/axes.h"
 
 #include <algorithm>
 #include <map>

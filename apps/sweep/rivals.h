@@ -11,10 +11,10 @@ namespace lrsm {
 
 /// What can be said of a figure that was looked up on a measured curve.
 enum class Reach {
-    measured,    ///< interpolated between measured points
-    before,      ///< beyond the curve's cheap end: dearer or better than asked already at its first point
-    beyond,      ///< beyond its dear end: never reached within what was measured
-    belowFloor   ///< at or below the truth's noise: no figure means anything there
+    measured,   ///< interpolated between measured points
+    before,     ///< beyond the curve's cheap end: dearer or better than asked already at its first point
+    beyond,     ///< beyond its dear end: never reached within what was measured
+    belowFloor  ///< at or below the truth's noise: no figure means anything there
 };
 
 /// A figure and what it is worth.
@@ -29,10 +29,10 @@ Looked costAt(const std::vector<CostError>& curve, double error, double floor);
 
 /// A preset against the path tracer in one case.
 struct EqualRow {
-    std::string name, preset;      ///< the case's name
+    std::string name, preset;  ///< the case's name
     double cost = 0.0, error = 0.0;
-    bool atFloor = false;          ///< the preset's own error is at or below the floor
-    Looked tracerError, tracerCost;  ///< at the preset's cost; for the preset's error
+    bool atFloor = false;                         ///< the preset's own error is at or below the floor
+    Looked tracerError, tracerCost;               ///< at the preset's cost; for the preset's error
     std::optional<double> errorRatio, costRatio;  ///< path tracer / preset, where both are measured (> 1: LRSM is better)
 };
 /// Each row of kind preset in each case that has a path tracer.
@@ -52,10 +52,10 @@ struct TracerRow {
     std::string name;
     std::uint64_t samples = 0;
     double cost = 0.0, error = 0.0;
-    bool atFloor = false;            ///< the path tracer's error is at or below the floor: nothing is compared
+    bool atFloor = false;                ///< the path tracer's error is at or below the floor: nothing is compared
     const Measurement* rival = nullptr;  ///< nullptr: no point of the front errs as little
-    double leastError = 0.0;         ///< of the front
-    std::optional<double> costRatio;  ///< path tracer / rival
+    double leastError = 0.0;             ///< of the front
+    std::optional<double> costRatio;     ///< path tracer / rival
 };
 std::vector<TracerRow> pathTracerAgainstFront(const std::vector<CaseRows>& cases);
 

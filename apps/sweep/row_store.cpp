@@ -1,18 +1,18 @@
 #include "apps/sweep/row_store.h"
 
+#include "apps/sweep/measure.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/output_folder.h"
-#include "apps/sweep/measure.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace lrsm {
 
@@ -112,7 +112,10 @@ RowStore::RowStore(const std::string& folder) : folder_(folder)
     }
 }
 
-RowStore::~RowStore() { ::close(file_); }
+RowStore::~RowStore()
+{
+    ::close(file_);
+}
 
 void RowStore::read()
 {
@@ -150,7 +153,8 @@ void RowStore::rebuildCsv() const
     const std::string path = pathIn(folder_, "sweep.csv");
     if (fs::is_regular_file(path)) {
         const std::vector<unsigned char> found = readFile(path);
-        if (std::equal(text.begin(), text.end(), found.begin(), found.end(), [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; })) return;
+        if (std::equal(text.begin(), text.end(), found.begin(), found.end(), [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; }))
+            return;
     }
     writeFileWhole(path, std::as_bytes(std::span(text)));
 }

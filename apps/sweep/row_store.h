@@ -45,8 +45,8 @@ class RowStore {
     std::size_t otherVersions_ = 0;
 };
 
-/// RFC 4180: a header of column names, lines end with CR LF, fields with a comma, a quote or a line end are quoted; null is an empty field. `measurementJson` gives the
-/// columns.
+/// RFC 4180: a header of column names, lines end with CR LF, fields with a comma, a quote or a line end are quoted; null is an empty field. `measurementJson`
+/// gives the columns.
 std::string csvHeader();
 std::string csvLine(const Measurement& row);
 

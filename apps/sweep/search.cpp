@@ -1,7 +1,7 @@
 #include "apps/sweep/search.h"
 
-#include "core/base/errors.h"
 #include "apps/sweep/search_grid.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -273,7 +273,8 @@ std::string describeSearch(const SearchResult& result)
     out << result.visited << " settings visited, " << result.abandoned << " of them abandoned after some scenes; " << result.pruned
         << " more came up and were pruned, " << result.refused << " refused. Of " << result.checked << " pruned settings visited anyway, " << result.missed
         << (result.missed == 1 ? " is" : " are") << " on the front of " << result.front.size() << " points. Of " << result.pairs
-        << " visited pairs of a coarser and a finer setting, " << result.violations << " break the error's slack and " << result.costViolations << " the cost's.";
+        << " visited pairs of a coarser and a finer setting, " << result.violations << " break the error's slack and " << result.costViolations
+        << " the cost's.";
     if (result.exhausted) out << " Nothing was left to visit.";
     if (result.stopped) out << " Stopped before the budget was spent.";
     return out.str();

@@ -18,7 +18,10 @@ void applyValue(Settings& settings, const Axis& axis, int index)
 }
 
 /// A logarithm that exact pictures survive.
-double safeLog(double value) { return std::log(std::max(value, 1e-12)); }
+double safeLog(double value)
+{
+    return std::log(std::max(value, 1e-12));
+}
 
 int distance(const GridPosition& a, const GridPosition& b)
 {
@@ -170,8 +173,7 @@ std::optional<CostError> StepEffects::predictLog(const std::vector<GridPoint>& p
 double gainOverFront(const std::vector<CostError>& front, const CostError& logPoint)
 {
     double gain = std::numeric_limits<double>::infinity();
-    for (const CostError& point : front)
-        gain = std::min(gain, std::max(safeLog(point.cost) - logPoint.cost, safeLog(point.error) - logPoint.error));
+    for (const CostError& point : front) gain = std::min(gain, std::max(safeLog(point.cost) - logPoint.cost, safeLog(point.error) - logPoint.error));
     return gain;
 }
 

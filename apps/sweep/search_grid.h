@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "apps/sweep/axes.h"
 #include "apps/sweep/front.h"
+#include "core/settings/settings.h"
 
 #include <optional>
 #include <string>

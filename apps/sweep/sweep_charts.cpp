@@ -105,8 +105,8 @@ std::string hoverOf(const Measurement& row)
 {
     std::string text = settingsLine(row) + "\nerror " + percentText(row.error.net());
     if (row.error.net() <= row.error.noise) text += " (<= floor)";
-    text += ", FLIP " + shortNumber(row.error.flip) + ", energy " + shortNumber(row.error.energy) + "\ntime " + plainNumber(row.cost) + " calibration frames; here " +
-            plainNumber(row.frame.median) + " ms, " + plainNumber(row.frameCpu) + " ms of processor time";
+    text += ", FLIP " + shortNumber(row.error.flip) + ", energy " + shortNumber(row.error.energy) + "\ntime " + plainNumber(row.cost) +
+            " calibration frames; here " + plainNumber(row.frame.median) + " ms, " + plainNumber(row.frameCpu) + " ms of processor time";
     if (row.bytes) text += "\nmemory " + plainNumber(static_cast<double>(row.bytes) / 1e6) + " MB";
     if (row.gpuBytes) text += ", " + plainNumber(static_cast<double>(row.gpuBytes) / 1e6) + " MB in the GPU's formats";
     return text;
@@ -129,11 +129,26 @@ std::vector<Dot> dotsOf(const std::vector<const Measurement*>& rows, const Sweep
     return dots;
 }
 
-double costOf(const Measurement& row) { return row.cost; }
-double percentErrorOf(const Measurement& row) { return 100.0 * row.error.net(); }
-double megabytesOf(const Measurement& row) { return static_cast<double>(row.bytes) / 1e6; }
-double flipOf(const Measurement& row) { return row.error.flip; }
-double energyOf(const Measurement& row) { return row.error.energy; }
+double costOf(const Measurement& row)
+{
+    return row.cost;
+}
+double percentErrorOf(const Measurement& row)
+{
+    return 100.0 * row.error.net();
+}
+double megabytesOf(const Measurement& row)
+{
+    return static_cast<double>(row.bytes) / 1e6;
+}
+double flipOf(const Measurement& row)
+{
+    return row.error.flip;
+}
+double energyOf(const Measurement& row)
+{
+    return row.error.energy;
+}
 
 double noiseOf(const CaseRows& rows)
 {
@@ -174,7 +189,8 @@ std::vector<const Measurement*> mostWanted(const std::vector<CaseRows>& cases, c
     std::vector<const Measurement*> wanted;
     for (const CaseRows& one : cases) {
         std::vector<const Measurement*> presets;
-        std::copy_if(one.settings.begin(), one.settings.end(), std::back_inserter(presets), [](const Measurement* row) { return row->kind == RowKind::preset; });
+        std::copy_if(one.settings.begin(), one.settings.end(), std::back_inserter(presets),
+                     [](const Measurement* row) { return row->kind == RowKind::preset; });
         addShown(wanted, presets);
     }
     for (const CaseRows& one : cases)
@@ -238,7 +254,8 @@ std::string caseCharts(const CaseRows& rows, const SweepPictures& pictures, cons
 std::string otherMetricCharts(const CaseRows& rows, const SweepPictures& pictures, const std::string& timeUnit)
 {
     const auto settings = dotsOf(rows.settings, pictures, costOf, energyOf), tracer = dotsOf(rows.pathTracer, pictures, costOf, energyOf);
-    Chart flip = chartOf(rows.name + ": FLIP against time", timeUnit, "mean FLIP", dotsOf(rows.settings, pictures, costOf, flipOf), dotsOf(rows.pathTracer, pictures, costOf, flipOf));
+    Chart flip = chartOf(rows.name + ": FLIP against time", timeUnit, "mean FLIP", dotsOf(rows.settings, pictures, costOf, flipOf),
+                         dotsOf(rows.pathTracer, pictures, costOf, flipOf));
     Chart energy = chartOf(rows.name + ": energy against time", timeUnit, "energy over the truth's", settings, tracer, Front::none);
     energy.logY = false;
     energy.series.push_back(levelSeries("truth", 1.0, settings, tracer));
@@ -251,7 +268,8 @@ std::string combinedCharts(const CombinedCases& all, const SweepPictures& pictur
     const auto bytes = [](const CombinedRow& row) { return row.bytes; };
     const auto settings = combinedDots(all.settings, all, pictures, cost), tracer = combinedDots(all.pathTracer, all, pictures, cost);
     const auto memory = combinedDots(all.settings, all, pictures, bytes);
-    return withFloor(chartOf("All scenes: error against time", "time over balanced's", "error over balanced's", settings, tracer), all.noise, settings, tracer) +
+    return withFloor(chartOf("All scenes: error against time", "time over balanced's", "error over balanced's", settings, tracer), all.noise, settings,
+                     tracer) +
            withFloor(chartOf("All scenes: error against memory", "memory over balanced's", "error over balanced's", memory, {}), all.noise, memory, {});
 }
 

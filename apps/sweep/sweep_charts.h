@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/report/chart.h"
 #include "apps/sweep/cases.h"
+#include "core/report/chart.h"
 
 #include <cstddef>
 #include <string>
@@ -15,7 +15,7 @@ namespace lrsm {
 struct SweepPictures {
     std::vector<std::vector<std::byte>> pngs;
     std::unordered_map<std::string, int> byKey;  ///< a row's key to its place; looked up, never walked
-    std::size_t found = 0;  ///< files there were
+    std::size_t found = 0;                       ///< files there were
     /// A list of none or one: the row's; the truth's, whose key is the case's.
     std::vector<int> of(const Measurement& row) const;
     std::vector<int> truthOf(const Measurement& row) const;

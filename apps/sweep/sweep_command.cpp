@@ -1,6 +1,9 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/interrupts.h"
+#include "apps/sweep/cases.h"
+#include "apps/sweep/operating_points.h"
+#include "apps/sweep/search.h"
 #include "apps/sweep/sweep_report.h"
 #include "apps/sweep/sweep_run.h"
 #include "apps/sweep/truth.h"
@@ -8,12 +11,9 @@
 #include "core/base/file.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/report/table.h"
 #include "core/scene/scene_hash.h"
-#include "apps/sweep/cases.h"
-#include "apps/sweep/operating_points.h"
-#include "apps/sweep/search.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -157,8 +157,8 @@ void printFronts(const std::vector<Measurement>& rows)
         if (one.settings.empty()) continue;
         ReportTable table{"", {"settings", "cost", "frame ms", "MB", "net RMSE / mean", "energy", "FLIP"}, {}};
         for (const Measurement* row : timeFront(one))
-            table.rows.push_back({row->label, shortNumber(row->cost), shortNumber(row->frame.median), shortNumber(double(row->bytes) * 1e-6), shortNumber(row->error.net()),
-                                  shortNumber(row->error.energy), shortNumber(row->error.flip)});
+            table.rows.push_back({row->label, shortNumber(row->cost), shortNumber(row->frame.median), shortNumber(double(row->bytes) * 1e-6),
+                                  shortNumber(row->error.net()), shortNumber(row->error.energy), shortNumber(row->error.flip)});
         const Measurement& any = *one.settings.front();
         std::cout << any.scene << ", " << any.width << "x" << any.height << ": " << table.rows.size() << " of " << one.settings.size()
                   << " settings on the front of cost (in calibration frames) against error\n"
@@ -178,7 +178,8 @@ void sayWhatWasFound(const RowStore& store, const SweepArguments& options)
     if (options.quiet) return;
     if (store.droppedTornLine()) std::cerr << "lrsm: " << options.output << ": the last row was cut off and is measured again" << std::endl;
     if (store.rowsOfOtherVersions() > 0)
-        std::cerr << "lrsm: " << options.output << ": " << store.rowsOfOtherVersions() << " rows of another version of this program are kept and not used" << std::endl;
+        std::cerr << "lrsm: " << options.output << ": " << store.rowsOfOtherVersions() << " rows of another version of this program are kept and not used"
+                  << std::endl;
 }
 
 std::vector<SweepTask> tasksOf(const std::vector<NamedSettings>& settings, std::size_t cases, RowKind kind, const std::string& base)
@@ -190,7 +191,8 @@ std::vector<SweepTask> tasksOf(const std::vector<NamedSettings>& settings, std::
 }
 
 /// Presets, then the path tracer, then the rest. False when stopped.
-bool runAll(const SweepArguments& options, Plan plan, const std::vector<NamedSettings>& settings, const Settings& base, SweepRun& run, const std::vector<SweptCase>& cases)
+bool runAll(const SweepArguments& options, Plan plan, const std::vector<NamedSettings>& settings, const Settings& base, SweepRun& run,
+            const std::vector<SweptCase>& cases)
 {
     std::vector<NamedSettings> presets;
     for (const std::string& name : presetNames()) presets.push_back({name, preset(name)});
@@ -220,7 +222,8 @@ int runSweep(const SweepArguments& options)
     const std::vector<NamedSettings> settings = options.reportOnly ? std::vector<NamedSettings>() : plannedSettings(options, plan, base);
     if (!options.reportOnly && options.scenes.empty() && options.view.empty()) throw InputError("sweep", "needs at least one SCENE");
 
-    if (options.reportOnly && !fs::is_regular_file(fs::path(options.output) / "rows.jsonl")) throw InputError(options.output, "holds no rows.jsonl; sweep first");
+    if (options.reportOnly && !fs::is_regular_file(fs::path(options.output) / "rows.jsonl"))
+        throw InputError(options.output, "holds no rows.jsonl; sweep first");
     const ThreadLimit threads(options.threads);
     std::vector<SweptCase> cases = options.reportOnly ? std::vector<SweptCase>() : loadCases(options);
     RowStore store(options.output);
@@ -235,8 +238,12 @@ int runSweep(const SweepArguments& options)
     std::size_t measured = 0, found = 0, skipped = 0;
     if (complete) {
         SweepRun run(cases, store,
-                     {.folder = options.output, .repeat = options.repeat, .maxMemoryMegabytes = options.maxMemoryMegabytes, .quiet = options.quiet,
-                      .stop = &catching.asked(), .instructions = &instructions});
+                     {.folder = options.output,
+                      .repeat = options.repeat,
+                      .maxMemoryMegabytes = options.maxMemoryMegabytes,
+                      .quiet = options.quiet,
+                      .stop = &catching.asked(),
+                      .instructions = &instructions});
         complete = runAll(options, plan, settings, base, run, cases);
         measured = run.measured();
         found = run.found();
@@ -270,12 +277,15 @@ Command addSweep(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the rows; the same command goes on where it was interrupted");
-    parser->add_option("--axes", options->axesFile, "one-at-a-time (around the settings given), presets, points (what lrsm tune chooses among), search (for the front), or a JSON file {\"key\": [values], ...}: every combination");
+    parser->add_option("--axes", options->axesFile,
+                       "one-at-a-time (around the settings given), presets, points (what lrsm tune chooses among), search (for the front), or a JSON file "
+                       "{\"key\": [values], ...}: every combination");
     parser->add_option("--axis", options->axes, "key=v1,v2,...: every combination with the others; repeatable")->allow_extra_args(false);
     parser->add_option("--repeat", options->repeat, "frames timed for each row")->capture_default_str();
     parser->add_option("--spp", options->samples, "paths a pixel of the truth, at least")->capture_default_str();
     parser->add_option("--references", options->references, "folder of references, as lrsm reference writes them: read, and added to (FOLDER/references)");
-    parser->add_option("--path-tracer", options->pathTracerSamples, "also the path tracer at 1, 2, 4 ... this many paths a pixel; 0: not")->capture_default_str();
+    parser->add_option("--path-tracer", options->pathTracerSamples, "also the path tracer at 1, 2, 4 ... this many paths a pixel; 0: not")
+        ->capture_default_str();
     parser->add_option("--budget", options->budget, "settings that the search visits")->capture_default_str();
     parser->add_option("--seed", options->seed, "of the search's random choices")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; settings that need more are skipped");

@@ -22,10 +22,13 @@ std::string summaryOf(const std::vector<Measurement>& rows, const std::vector<Ca
     std::size_t tracer = 0;
     for (const CaseRows& one : cases) tracer += one.pathTracer.size();
     std::string text = countOf(rows.size() - tracer, "LRSM row") + " and " + countOf(tracer, "path tracer row") + " on " + countOf(cases.size(), "scene") +
-                       ". Errors are of the irradiance against a path-traced truth of one bounce: RMSE over the mean, the truth's own noise taken out; nothing is claimed below its "
+                       ". Errors are of the irradiance against a path-traced truth of one bounce: RMSE over the mean, the truth's own noise taken out; nothing "
+                       "is claimed below its "
                        "noise floor. Time is processor time in calibration frames, a fixed small frame rendered beside each measurement: ";
     text += "one is " + shortNumber(unit.median) + " ms here (" + shortNumber(unit.min) + " to " + shortNumber(unit.max) + " over the rows).";
-    if (noise > 0.0) text += " Rows that equal their base in every bit differ from it in time by " + percentText(noise) + " (median): read no difference in time closer than that.";
+    if (noise > 0.0)
+        text += " Rows that equal their base in every bit differ from it in time by " + percentText(noise) +
+                " (median): read no difference in time closer than that.";
     return text;
 }
 
@@ -57,15 +60,24 @@ std::string effectsHtml(const std::vector<CaseRows>& cases, double unit, double 
     std::string html;
     if (!effects.empty())
         html = headingHtml("One setting at a time") +
-               paragraphHtml("Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change of processor time "
-                             "(mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved is paid with (saves time, "
-                             "cheapest first). Coloured rows lose in both and save no memory. Changes of time below " + percentText(tolerance) + " count as none.") +
+               paragraphHtml(
+                   "Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change "
+                   "of processor time "
+                   "(mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved is paid "
+                   "with (saves time, "
+                   "cheapest first). Coloured rows lose in both and save no memory. Changes of time below " +
+                   percentText(tolerance) + " count as none.") +
                foldedHtml(countOf(changing.rows.size(), "value") + ", sorted by what a millisecond buys", tableHtml(changing)) +
-               (nothing.rows.empty() ? "" : foldedHtml(countOf(nothing.rows.size(), "value") + (nothing.rows.size() == 1 ? " changes" : " change") + " nothing: not one bit of the irradiance, in any scene", tableHtml(nothing)));
+               (nothing.rows.empty() ? ""
+                                     : foldedHtml(countOf(nothing.rows.size(), "value") + (nothing.rows.size() == 1 ? " changes" : " change") +
+                                                      " nothing: not one bit of the irradiance, in any scene",
+                                                  tableHtml(nothing)));
     if (!never.rows.empty())
         html += foldedHtml(countOf(never.rows.size(), "value") + " never on any front, neither of time nor of memory",
-                           paragraphHtml("The closest miss: how much dearer the value's best row is than the front's cheapest point of at most its error. Values that change no bit miss "
-                                         "by the clock's noise alone.") + tableHtml(never));
+                           paragraphHtml("The closest miss: how much dearer the value's best row is than the front's cheapest point of at most its error. "
+                                         "Values that change no bit miss "
+                                         "by the clock's noise alone.") +
+                               tableHtml(never));
     return html;
 }
 
@@ -75,10 +87,15 @@ std::string rivalsHtml(const std::vector<CaseRows>& cases)
     const ReportTable equal = equalTable(presets), tracer = tracerTable(pathTracerAgainstFront(cases));
     if (equal.rows.empty() && tracer.rows.empty()) return {};
     std::string html = headingHtml("Equal time and equal error: the path tracer");
-    html += paragraphHtml("The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between its measured points in "
-                          "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
-                          "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no ratio is given.");
-    if (!equal.rows.empty()) html += tableHtml(equalSummaryTable(summarizeEqual(presets))) + foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(equal), cases.size() == 1);
+    html += paragraphHtml(
+        "The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between its "
+        "measured points in "
+        "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
+        "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no ratio is "
+        "given.");
+    if (!equal.rows.empty())
+        html += tableHtml(equalSummaryTable(summarizeEqual(presets))) +
+                foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(equal), cases.size() == 1);
     if (!tracer.rows.empty()) html += foldedHtml("The path tracer against the cheapest point of each scene's front that errs no more", tableHtml(tracer));
     return html;
 }
@@ -86,7 +103,9 @@ std::string rivalsHtml(const std::vector<CaseRows>& cases)
 std::string caseHtml(const CaseRows& rows, const SweepPictures& pictures, const std::string& timeUnit)
 {
     return headingHtml(rows.name) + caseCharts(rows, pictures, timeUnit) + foldedHtml("FLIP and energy", otherMetricCharts(rows, pictures, timeUnit)) +
-           (rows.settings.empty() ? "" : foldedHtml("The front in numbers", tableHtml(frontTable("Error against time", timeFront(rows))) + tableHtml(frontTable("Error against memory", memoryFront(rows)))));
+           (rows.settings.empty() ? ""
+                                  : foldedHtml("The front in numbers", tableHtml(frontTable("Error against time", timeFront(rows))) +
+                                                                           tableHtml(frontTable("Error against memory", memoryFront(rows)))));
 }
 
 }  // namespace

@@ -58,8 +58,9 @@ void SweepRun::show(const SweptCase& sceneCase, const std::string& label, double
         std::snprintf(text, sizeof text, "%d:%02d:%02d left", int(seconds) / 3600, int(seconds) / 60 % 60, int(seconds) % 60);
         time = text;
     }
-    progress_.show("row " + std::to_string(done + 1) + " of " + std::to_string(std::max(expected_, done + 1)) + ", " + time + ": " + sceneCase.scene.name + " " + label,
-                   (double(done) + fraction) / double(std::max<std::size_t>(1, expected_)));
+    progress_.show(
+        "row " + std::to_string(done + 1) + " of " + std::to_string(std::max(expected_, done + 1)) + ", " + time + ": " + sceneCase.scene.name + " " + label,
+        (double(done) + fraction) / double(std::max<std::size_t>(1, expected_)));
 }
 
 void SweepRun::writeThumbnail(const SweptCase& sceneCase, const std::string& key, const Image<Vec3>& irradiance) const
@@ -95,7 +96,8 @@ const Measurement* SweepRun::measure(const SweepTask& task)
     try {
         const Requirements needs = analyseRequirements(one.scene.scene, task.named.settings.force);
         enforceMemoryLimit(one.scene.scene, needs, task.named.settings, one.scene.width, one.scene.height, options_.maxMemoryMegabytes);
-        MeasureOptions options{.repeat = options_.repeat, .progress = [&](double fraction) { show(one, task.named.label, fraction); }, .instructions = options_.instructions};
+        MeasureOptions options{
+            .repeat = options_.repeat, .progress = [&](double fraction) { show(one, task.named.label, fraction); }, .instructions = options_.instructions};
         Measured measured = measureSettings(one.scene, one.figures, task.named.settings, calibration_, options);
         measured.row.label = task.named.label;
         measured.row.kind = task.kind;
@@ -121,7 +123,8 @@ bool SweepRun::measurePathTracer(std::size_t sceneCase, std::uint64_t samples)
     if (there == rows) return true;
     if (stopped()) return false;
     // One run makes them all: what is there is traced again, and not added again.
-    const MeasureOptions options{.progress = [&](double fraction) { show(one, "path tracer", fraction); }, .instructions = options_.instructions, .stop = options_.stop};
+    const MeasureOptions options{
+        .progress = [&](double fraction) { show(one, "path tracer", fraction); }, .instructions = options_.instructions, .stop = options_.stop};
     lrsm::measurePathTracer(one.scene, one.figures, samples, calibration_, options, [&](const Measured& measured) {
         if (!store_.find(measured.row.key)) keep(one, measured);
     });

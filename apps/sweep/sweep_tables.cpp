@@ -21,11 +21,11 @@ std::string changeText(double change)
 std::string_view nameOf(EffectKind kind)
 {
     switch (kind) {
-        case EffectKind::winsBoth: return "wins both";
-        case EffectKind::buys: return "buys accuracy";
-        case EffectKind::saves: return "saves time";
-        case EffectKind::losesBoth: return "loses both";
-        case EffectKind::changesNothing: break;
+    case EffectKind::winsBoth: return "wins both";
+    case EffectKind::buys: return "buys accuracy";
+    case EffectKind::saves: return "saves time";
+    case EffectKind::losesBoth: return "loses both";
+    case EffectKind::changesNothing: break;
     }
     return "changes nothing";
 }
@@ -40,18 +40,25 @@ std::vector<std::string> effectRow(const Effect& e)
 {
     const bool useless = e.kind == EffectKind::losesBoth && !savesMemory(e);
     const std::string verdict = std::string(nameOf(e.kind)) + (e.kind == EffectKind::losesBoth && savesMemory(e) ? ", saves memory" : "");
-    return {(useless ? "!" : "") + e.label, e.base, verdict, e.percentPerMs > 0.0 ? shortNumber(e.percentPerMs) : "", changeText(e.error), changeText(e.worstError),
-            changeText(e.cost), (e.milliseconds > 0.0 ? "+" : "") + shortNumber(e.milliseconds), changeText(e.bytes),
+    return {(useless ? "!" : "") + e.label,
+            e.base,
+            verdict,
+            e.percentPerMs > 0.0 ? shortNumber(e.percentPerMs) : "",
+            changeText(e.error),
+            changeText(e.worstError),
+            changeText(e.cost),
+            (e.milliseconds > 0.0 ? "+" : "") + shortNumber(e.milliseconds),
+            changeText(e.bytes),
             std::to_string(e.changed) + " of " + std::to_string(e.cases)};
 }
 
 std::string errorText(const Looked& looked, const std::string& end)
 {
     switch (looked.reach) {
-        case Reach::measured: return shortNumber(100.0 * looked.value);
-        case Reach::before: return "> " + shortNumber(100.0 * looked.value) + end;
-        case Reach::beyond: return "< " + shortNumber(100.0 * looked.value);
-        case Reach::belowFloor: break;
+    case Reach::measured: return shortNumber(100.0 * looked.value);
+    case Reach::before: return "> " + shortNumber(100.0 * looked.value) + end;
+    case Reach::beyond: return "< " + shortNumber(100.0 * looked.value);
+    case Reach::belowFloor: break;
     }
     return "<= floor";
 }
@@ -59,10 +66,10 @@ std::string errorText(const Looked& looked, const std::string& end)
 std::string costText(const Looked& looked)
 {
     switch (looked.reach) {
-        case Reach::measured: return plainNumber(looked.value);
-        case Reach::before: return "< " + plainNumber(looked.value);
-        case Reach::beyond: return "> " + plainNumber(looked.value);
-        case Reach::belowFloor: break;
+    case Reach::measured: return plainNumber(looked.value);
+    case Reach::before: return "< " + plainNumber(looked.value);
+    case Reach::beyond: return "> " + plainNumber(looked.value);
+    case Reach::belowFloor: break;
     }
     return "<= floor";
 }
@@ -94,13 +101,19 @@ std::string changedText(const Measurement& row)
 
 ReportTable casesTable(const std::vector<CaseRows>& cases)
 {
-    ReportTable table{"Scenes", {"scene", "size", "settings", "path tracer, spp", "truth, spp", "noise floor, %", "balanced: error, %", "frames", "ms", "MB"}, {}};
+    ReportTable table{
+        "Scenes", {"scene", "size", "settings", "path tracer, spp", "truth, spp", "noise floor, %", "balanced: error, %", "frames", "ms", "MB"}, {}};
     for (const CaseRows& one : cases) {
         const Measurement& any = one.settings.empty() ? *one.pathTracer.front() : *one.settings.front();
-        std::vector<std::string> row = {one.name, std::to_string(any.width) + " x " + std::to_string(any.height), std::to_string(one.settings.size()),
-                                        one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples), std::to_string(any.truthSamples), shortNumber(100.0 * any.error.noise)};
+        std::vector<std::string> row = {one.name,
+                                        std::to_string(any.width) + " x " + std::to_string(any.height),
+                                        std::to_string(one.settings.size()),
+                                        one.pathTracer.empty() ? "none" : "1 .. " + std::to_string(one.pathTracer.back()->samples),
+                                        std::to_string(any.truthSamples),
+                                        shortNumber(100.0 * any.error.noise)};
         if (const Measurement* balanced = findSettings(one, Settings{}))
-            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), plainNumber(balanced->cost), plainNumber(balanced->frame.median), megabytes(balanced->bytes)});
+            row.insert(row.end(), {shortNumber(100.0 * balanced->error.net()), plainNumber(balanced->cost), plainNumber(balanced->frame.median),
+                                   megabytes(balanced->bytes)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -141,7 +154,8 @@ ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<E
 ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets)
 {
     ReportTable table{"Path tracer over preset: geometric means over the scenes that have the ratio",
-                      {"preset", "error at equal time", "scenes", "time at equal error", "scenes"}, {}};
+                      {"preset", "error at equal time", "scenes", "time at equal error", "scenes"},
+                      {}};
     for (const EqualSummary& p : presets)
         table.rows.push_back({p.preset, p.errorRatios ? shortNumber(p.errorRatio) : "", std::to_string(p.errorRatios) + " of " + std::to_string(p.cases),
                               p.costRatios ? shortNumber(p.costRatio) : "", std::to_string(p.costRatios) + " of " + std::to_string(p.cases)});
@@ -152,8 +166,8 @@ ReportTable equalTable(const std::vector<EqualRow>& rows)
 {
     ReportTable table{"", {"scene", "preset", "frames", "error, %", "equal time: its error, %", "ratio", "equal error: its frames", "ratio"}, {}};
     for (const EqualRow& r : rows)
-        table.rows.push_back({r.name, r.preset, plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error), errorText(r.tracerError, " (1 spp is dearer)"),
-                              ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
+        table.rows.push_back({r.name, r.preset, plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error),
+                              errorText(r.tracerError, " (1 spp is dearer)"), ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
     return table;
 }
 
@@ -162,8 +176,11 @@ ReportTable tracerTable(const std::vector<TracerRow>& rows)
     ReportTable table{"", {"scene", "spp", "frames", "error, %", "LRSM: frames", "error, %", "ratio of frames", "LRSM's settings against balanced"}, {}};
     for (const TracerRow& r : rows) {
         std::vector<std::string> row = {r.name, std::to_string(r.samples), plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
-        if (r.rival) row.insert(row.end(), {plainNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
-        else row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "", r.atFloor ? "not compared" : "none errs as little"});
+        if (r.rival)
+            row.insert(row.end(), {plainNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
+        else
+            row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "",
+                                   r.atFloor ? "not compared" : "none errs as little"});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -173,8 +190,9 @@ ReportTable frontTable(const std::string& title, const std::vector<const Measure
 {
     ReportTable table{title, {"frames", "ms", "error, %", "FLIP", "energy", "MB", "settings against balanced"}, {}};
     for (const Measurement* row : front)
-        table.rows.push_back({plainNumber(row->cost), plainNumber(row->frame.median), row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()),
-                              shortNumber(row->error.flip), shortNumber(row->error.energy), megabytes(row->bytes), changedText(*row)});
+        table.rows.push_back({plainNumber(row->cost), plainNumber(row->frame.median),
+                              row->error.net() <= row->error.noise ? "<= floor" : shortNumber(100.0 * row->error.net()), shortNumber(row->error.flip),
+                              shortNumber(row->error.energy), megabytes(row->bytes), changedText(*row)});
     return table;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/report/table.h"
 #include "apps/sweep/effects.h"
 #include "apps/sweep/rivals.h"
+#include "core/report/table.h"
 
 #include <string>
 #include <vector>

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostBlockBits = 6;         // 64 paths stratified against each other
+constexpr int kMostBlockBits = 6;             // 64 paths stratified against each other
 constexpr std::uint64_t kBlocksForNoise = 8;  // from fewer the noise floor itself is too uncertain
 constexpr std::size_t kNameDigits = 16;
 
@@ -105,13 +105,15 @@ std::optional<Truth> findOrMakeTruth(const SceneCase& sceneCase, std::uint64_t s
     }
 
     ReferenceState state = earlier ? std::move(earlier->state) : tracer.start({0, samples});
-    const TraceOptions trace{.folder = own.string(), .show = [&](const std::string& text, double fraction) { progress.show("truth of " + sceneCase.name + ": " + text, fraction); },
+    const TraceOptions trace{.folder = own.string(),
+                             .show = [&](const std::string& text, double fraction) { progress.show("truth of " + sceneCase.name + ": " + text, fraction); },
                              .stop = stop};
     if (!traceRange(tracer, state, {0, samples}, checkpoint, trace)) return {};
     checkpoint.state = std::move(state);
     if (!references.empty()) {
         OutputFolder folder(own.string());
-        writeReference(folder, checkpoint, seenLayers(tracer.primary()), referenceJson(sceneCase.scene, sceneHash, sceneCase.camera, tracer, checkpoint.state), {});
+        writeReference(folder, checkpoint, seenLayers(tracer.primary()), referenceJson(sceneCase.scene, sceneHash, sceneCase.camera, tracer, checkpoint.state),
+                       {});
         folder.commit();
     }
     return toTruth(sceneCase, checkpoint, tracer);

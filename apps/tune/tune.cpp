@@ -120,7 +120,8 @@ class Tuner {
             const std::vector<Known> all = known();
             return std::count_if(all.begin(), all.end(), [&](const Known& point) { return meets(point); }) >= kEnough;
         };
-        while (!enough() && probeNext()) {}
+        while (!enough() && probeNext()) {
+        }
     }
 
     /// False when nothing is left that is worth it.

@@ -37,7 +37,7 @@ std::uint64_t samplesNeeded(double noise, std::uint64_t samples, double error);
 /// What a calibration frame means in milliseconds. Of all runs the least counts: other programs can only slow a run.
 struct TimeScale {
     double calibrationCpu = std::numeric_limits<double>::infinity();  ///< processor time of the calibration frame, ms; infinite: not run yet
-    double wallPerCpu = 1.0;      ///< wall time over processor time of a frame: 1 / threads where they share the work evenly
+    double wallPerCpu = 1.0;  ///< wall time over processor time of a frame: 1 / threads where they share the work evenly
     double milliseconds(double cost) const { return cost * calibrationCpu * wallPerCpu; }
 };
 /// `before` and what the rows of this process add to it.
@@ -53,7 +53,7 @@ struct TuneFigures {
 /// One setting that may be chosen.
 struct TunePoint {
     NamedSettings named;
-    double megabytes = 0.0;  ///< exact, at the asked size
+    double megabytes = 0.0;               ///< exact, at the asked size
     std::optional<Measurement> probe;     ///< at the probe's size
     std::optional<Measurement> verified;  ///< at the asked size
     std::string skipped;                  ///< why it was not probed
@@ -94,9 +94,9 @@ struct TuneActions {
 /// With an error asked for: the cheapest point that meets all. Without: the smallest error that meets the rest, the cheaper of two equal ones.
 ///
 /// `points` go from cheap to costly. They are probed in this order, as far as needed: what is over the memory is not, what follows a point of 1.5 times the
-/// time is not, and with an error asked for, what follows two points within the budget is not. The best prediction is verified; when it fails, and when the verified
-/// figures shift the other predictions, the next best is, and once a point holds, a better one
-/// that is predicted up to 5 % outside the budget: `maxVerifications` times in all. Before nothing is found, the nearest is verified too.
+/// time is not, and with an error asked for, what follows two points within the budget is not. The best prediction is verified; when it fails, and when the
+/// verified figures shift the other predictions, the next best is, and once a point holds, a better one that is predicted up to 5 % outside the budget:
+/// `maxVerifications` times in all. Before nothing is found, the nearest is verified too.
 TuneResult tune(std::vector<TunePoint> points, const TuneRequest& request, const TuneActions& actions);
 
 }  // namespace lrsm

@@ -3,18 +3,18 @@
 #include "apps/common/describe.h"
 #include "apps/common/memory.h"
 #include "apps/common/progress.h"
+#include "apps/info/advice.h"
+#include "apps/sweep/measure.h"
+#include "apps/sweep/operating_points.h"
 #include "apps/sweep/truth.h"
+#include "apps/tune/tune.h"
 #include "apps/tune/tune_report.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/report/table.h"
 #include "core/scene/scene_hash.h"
-#include "apps/info/advice.h"
-#include "apps/sweep/measure.h"
-#include "apps/sweep/operating_points.h"
-#include "apps/tune/tune.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,8 @@ void readTime(const std::string& text, TuneBudget& budget)
     const bool frames = endsWith("cal");
     if (!frames) endsWith("ms");
     double value = 0.0;
-    if (number.empty() || !CLI::detail::lexical_cast(number, value)) throw InputError("--max-time " + text, "must be milliseconds (40 or 40ms) or calibration frames (3.5cal)");
+    if (number.empty() || !CLI::detail::lexical_cast(number, value))
+        throw InputError("--max-time " + text, "must be milliseconds (40 or 40ms) or calibration frames (3.5cal)");
     (frames ? budget.cost : budget.milliseconds) = value;
 }
 
@@ -114,7 +115,9 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
 /// The case at one size, with its truth.
 class SizedCase {
   public:
-    SizedCase(SceneCase& sceneCase, const IVec2& size, Truth truth) : case_(sceneCase), size_(size), truth_(std::move(truth)), figures_(lrsm::figuresOf(truth_)) {}
+    SizedCase(SceneCase& sceneCase, const IVec2& size, Truth truth) : case_(sceneCase), size_(size), truth_(std::move(truth)), figures_(lrsm::figuresOf(truth_))
+    {
+    }
 
     Measurement measure(const NamedSettings& named, const Calibration& calibration, const MeasureOptions& options)
     {
@@ -171,7 +174,9 @@ int runTune(const TuneArguments& options)
     if (probeSize.x * probeSize.y > size.x * size.y) probeSize = size;
     if (options.samples < 128 || options.samples > kMaxSamples) throw InputError("--spp " + std::to_string(options.samples), "must be 128 .. 2^24");
     // Fails now rather than after minutes.
-    if (!options.output.empty()) { const OutputFolder writable(std::filesystem::absolute(options.output).parent_path().string()); }
+    if (!options.output.empty()) {
+        const OutputFolder writable(std::filesystem::absolute(options.output).parent_path().string());
+    }
 
     const ThreadLimit threads(options.threads);
     SceneCase sceneCase;
@@ -209,7 +214,8 @@ int runTune(const TuneArguments& options)
     const TuneActions actions = {
         [&](const NamedSettings& named) {
             ++probed;
-            return last = small.measure(named, calibration, shown("probing " + named.label + " (" + std::to_string(probed) + " of at most " + std::to_string(points.size()) + ")"));
+            return last = small.measure(named, calibration,
+                                        shown("probing " + named.label + " (" + std::to_string(probed) + " of at most " + std::to_string(points.size()) + ")"));
         },
         [&](const NamedSettings& named) {
             if (!asked) asked = std::make_unique<SizedCase>(truthAt(size, verifyingSamples(budget, last, options.samples, small.samples())));
@@ -219,7 +225,8 @@ int runTune(const TuneArguments& options)
     progress.clear();
 
     // The file holds every setting, so that it means the same over any preset.
-    TuneRecord record{sceneCase.name, request, result, probeSize, small.figures().noise, small.samples(), asked ? asked->figures().noise : 0.0, asked ? asked->samples() : 0};
+    TuneRecord record{
+        sceneCase.name, request, result, probeSize, small.figures().noise, small.samples(), asked ? asked->figures().noise : 0.0, asked ? asked->samples() : 0};
     const std::optional<std::size_t> written = result.chosen ? result.chosen : options.nearest ? result.nearest : std::nullopt;
     const std::string text = jsonText(tuneJson(record, written));
     if (written && !options.output.empty()) writeFileWhole(options.output, std::as_bytes(std::span(text)));
@@ -239,10 +246,12 @@ Command addTune(CLI::App& program)
     options->size = "640x360";
     addSceneOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "settings file for render --settings; written when a setting meets the budget");
-    const CLI::Option* error = parser->add_option("--max-error", options->maxError, "of the metric, on the irradiance; the cheapest settings that meet it are taken");
+    const CLI::Option* error =
+        parser->add_option("--max-error", options->maxError, "of the metric, on the irradiance; the cheapest settings that meet it are taken");
     parser->add_option("--max-time", options->maxTime, "of a frame: 40 or 40ms on this machine when quiet; 3.5cal: calibration frames, for any machine");
     const CLI::Option* memory = parser->add_option("--max-memory", options->maxMemory, "MB of 10^6 bytes, as in render --max-memory");
-    parser->add_option("--metric", options->metric, "rmse (over the mean, without the truth's noise), flip, or energy (its distance from 1)")->capture_default_str();
+    parser->add_option("--metric", options->metric, "rmse (over the mean, without the truth's noise), flip, or energy (its distance from 1)")
+        ->capture_default_str();
     parser->add_option("--set", options->assignments, "key=value kept in every settings tried; repeatable")->allow_extra_args(false);
     addPictureOptions(*parser, *options);
     parser->add_option("--probe", options->probe, "WxH at which settings are tried")->capture_default_str();

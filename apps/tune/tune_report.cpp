@@ -1,7 +1,7 @@
 #include "apps/tune/tune_report.h"
 
-#include "core/settings/settings_table.h"
 #include "core/report/table.h"
+#include "core/settings/settings_table.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -60,11 +60,17 @@ TuneJson figuresJson(const std::optional<TuneFigures>& figures)
     return {{"error", figures->error}, {"cost", figures->cost}, {"milliseconds", figures->milliseconds}, {"megabytes", figures->megabytes}};
 }
 
-TuneJson limitJson(const std::optional<double>& limit) { return limit ? TuneJson(*limit) : TuneJson(nullptr); }
+TuneJson limitJson(const std::optional<double>& limit)
+{
+    return limit ? TuneJson(*limit) : TuneJson(nullptr);
+}
 
 TuneJson pointJson(const TunePoint& point, const TuneRecord& record)
 {
-    TuneJson json = {{"name", point.named.label}, {"megabytes", point.megabytes}, {"predicted", figuresJson(predicted(point, record))}, {"verified", figuresJson(verified(point, record))}};
+    TuneJson json = {{"name", point.named.label},
+                     {"megabytes", point.megabytes},
+                     {"predicted", figuresJson(predicted(point, record))},
+                     {"verified", figuresJson(verified(point, record))}};
     if (point.verified) {
         json["verified"]["measured_milliseconds"] = point.verified->frame.median;
         json["verified"]["energy"] = point.verified->error.energy;
@@ -83,16 +89,20 @@ std::vector<std::string> tableRow(const TunePoint& point, bool chosen, const Tun
 {
     const auto before = predicted(point, record), after = verified(point, record);
     const auto text = [](const std::optional<TuneFigures>& figures, double TuneFigures::*field) { return figures ? figure((*figures).*field) : std::string(); };
-    return {chosen ? "->" : "",           point.named.label,
-            text(before, &TuneFigures::error), text(before, &TuneFigures::milliseconds), text(before, &TuneFigures::cost), figure(point.megabytes),
-            text(after, &TuneFigures::error),  text(after, &TuneFigures::milliseconds),  point.skipped};
+    return {chosen ? "->" : "",
+            point.named.label,
+            text(before, &TuneFigures::error),
+            text(before, &TuneFigures::milliseconds),
+            text(before, &TuneFigures::cost),
+            figure(point.megabytes),
+            text(after, &TuneFigures::error),
+            text(after, &TuneFigures::milliseconds),
+            point.skipped};
 }
 
 std::string sentence(const TunePoint& point, const TuneRecord& record)
 {
-    const auto words = [](const TuneFigures& f) {
-        return "error " + figure(f.error) + ", " + figure(f.milliseconds) + " ms";
-    };
+    const auto words = [](const TuneFigures& f) { return "error " + figure(f.error) + ", " + figure(f.milliseconds) + " ms"; };
     std::string text = point.named.label + ", " + figure(point.megabytes) + " MB";
     if (const auto before = predicted(point, record)) text += "; predicted " + words(*before);
     if (const auto after = verified(point, record)) text += "; verified " + words(*after) + " (this run took " + figure(point.verified->frame.median) + " ms)";
@@ -110,8 +120,11 @@ TuneJson tuneJson(const TuneRecord& record, std::optional<std::size_t> written)
     TuneJson& tune = json["tune"];
     tune["scene"] = record.scene;
     tune["size"] = {request.width, request.height};
-    tune["budget"] = {{"metric", metricName(request.budget.metric)}, {"max_error", limitJson(request.budget.error)}, {"max_milliseconds", limitJson(request.budget.milliseconds)},
-                      {"max_calibration_frames", limitJson(request.budget.cost)}, {"max_megabytes", limitJson(request.budget.megabytes)}};
+    tune["budget"] = {{"metric", metricName(request.budget.metric)},
+                      {"max_error", limitJson(request.budget.error)},
+                      {"max_milliseconds", limitJson(request.budget.milliseconds)},
+                      {"max_calibration_frames", limitJson(request.budget.cost)},
+                      {"max_megabytes", limitJson(request.budget.megabytes)}};
     tune["met"] = result.chosen.has_value();
     tune["chosen"] = result.chosen ? TuneJson(result.points[*result.chosen].named.label) : TuneJson(nullptr);
     tune["nearest"] = result.nearest ? TuneJson(result.points[*result.nearest].named.label) : TuneJson(nullptr);
@@ -131,11 +144,11 @@ void printTune(std::ostream& out, const TuneRecord& record, const std::string& f
     const TuneRequest& request = record.request;
     const TuneResult& result = record.result;
     out << record.scene << " at " << request.width << "x" << request.height << ": " << budgetText(request.budget) << "\n"
-        << "error: " << metricWords(request.budget.metric) << " of the irradiance; the truth of the probes (" << record.probeSize.x << "x" << record.probeSize.y << ", "
-        << record.probeSamples << " spp) has noise " << figure(record.probeNoise);
+        << "error: " << metricWords(request.budget.metric) << " of the irradiance; the truth of the probes (" << record.probeSize.x << "x" << record.probeSize.y
+        << ", " << record.probeSamples << " spp) has noise " << figure(record.probeNoise);
     if (record.verifySamples > 0) out << ", that of the verification (" << record.verifySamples << " spp) " << figure(record.verifyNoise);
-    out << "\ntime: one calibration frame is " << figure(result.scale.calibrationCpu) << " ms of processor time; wall time is " << figure(result.scale.wallPerCpu)
-        << " of a frame's processor time\n\n";
+    out << "\ntime: one calibration frame is " << figure(result.scale.calibrationCpu) << " ms of processor time; wall time is "
+        << figure(result.scale.wallPerCpu) << " of a frame's processor time\n\n";
 
     ReportTable table{"", {"", "settings", "error", "ms", "cal. frames", "MB", "error, verified", "ms, verified", "not probed"}, {}};
     const std::optional<std::size_t> marked = result.chosen ? result.chosen : result.nearest;

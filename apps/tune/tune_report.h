@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/base/math.h"
 #include "apps/tune/tune.h"
+#include "core/base/math.h"
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -16,10 +16,10 @@ struct TuneRecord {
     const TuneRequest& request;
     const TuneResult& result;
     IVec2 probeSize{0};
-    double probeNoise = 0.0;            ///< of the truth, RMSE / mean
+    double probeNoise = 0.0;  ///< of the truth, RMSE / mean
     std::uint64_t probeSamples = 0;
     double verifyNoise = 0.0;
-    std::uint64_t verifySamples = 0;    ///< 0: nothing was verified
+    std::uint64_t verifySamples = 0;  ///< 0: nothing was verified
 };
 
 /// {"settings": of `written`, "tune": {...}}: a file for --settings. Without `written` there are no settings in it.

@@ -6,8 +6,8 @@ namespace lrsm {
 namespace {
 
 /// V of one layer; 0 where it holds nothing, or only surfaces that face away.
-float surfaceVisibility(const FilteredTexel& texel, const LayerRange& layer, float depthRange, float depthMetres, const Vec3& toLight,
-                        const Vec3& direction, float footprint, const NormalCdf& phi)
+float surfaceVisibility(const FilteredTexel& texel, const LayerRange& layer, float depthRange, float depthMetres, const Vec3& toLight, const Vec3& direction,
+                        float footprint, const NormalCdf& phi)
 {
     if (!(texel.depthAlpha > 0.0f && texel.normalAlpha > 0.0f)) return 0.0f;
     const float nDotV = -glm::dot(texel.normal, direction), nDotL = glm::dot(texel.normal, toLight) / glm::length(texel.normal);

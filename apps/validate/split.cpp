@@ -1,10 +1,10 @@
 #include "apps/validate/split.h"
 
+#include "apps/validate/hit_radiance.h"
+#include "apps/validate/voxel_ray.h"
 #include "conetrace/lrsm/gather_setup.h"
 #include "core/base/parallel.h"
 #include "reference/integrator.h"
-#include "apps/validate/hit_radiance.h"
-#include "apps/validate/voxel_ray.h"
 
 namespace lrsm {
 namespace {
@@ -106,8 +106,8 @@ PixelGather gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& 
 
 }  // namespace
 
-void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree,
-                 const ConeSettings& cones, const SplitSettings& split, Gathered& gathered)
+void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree, const ConeSettings& cones,
+                 const SplitSettings& split, Gathered& gathered)
 {
     if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return;
     SplitWorld world{opacity, lrsms, embree, cones, split, {}, gatherDirections(split.strata), NormalCdf(cones.gaussian, cones.gaussianTableSize)};

@@ -33,7 +33,7 @@ struct SplitSettings {
 ///   what the ordinary frame has on top of both.
 ///
 /// Not for {voxel, lrsm}: that is the cones' own picture, and leaves `gathered` as it is. Same bits for any number of threads.
-void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree,
-                 const ConeSettings& cones, const SplitSettings& split, Gathered& gathered);
+void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree, const ConeSettings& cones,
+                 const SplitSettings& split, Gathered& gathered);
 
 }  // namespace lrsm

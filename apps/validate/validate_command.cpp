@@ -82,7 +82,8 @@ void writeResults(const std::string& path, const std::vector<ValidationPart>& pa
 int runValidate(const ValidateArguments& options)
 {
     if (options.extremes && !options.equation.empty()) throw InputError("--equation " + options.equation, "has no meaning with --extremes");
-    if (!options.equation.empty() && !options.scene.empty()) throw InputError("--equation " + options.equation, "is held against its oracle without a scene; leave out SCENE");
+    if (!options.equation.empty() && !options.scene.empty())
+        throw InputError("--equation " + options.equation, "is held against its oracle without a scene; leave out SCENE");
     if (!options.only.empty() && !options.extremes) throw InputError("--only " + options.only, "chooses among the extremes; add --extremes");
     if (!options.output.empty()) OutputFolder probe(options.output);  // an hour's work must not end in a folder that cannot be written
 
@@ -107,7 +108,8 @@ int runValidate(const ValidateArguments& options)
     const bool held = std::all_of(parts.begin(), parts.end(), [](const ValidationPart& part) { return part.held; });
     json["held"] = held;
     if (!options.output.empty()) writeResults(options.output, parts, json);
-    if (options.json) std::cout << jsonText(json);
+    if (options.json)
+        std::cout << jsonText(json);
     else if (!options.quiet)
         for (const ValidationPart& part : parts) std::cout << part.text << part.verdict << "\n";
     if (!options.output.empty() && !options.quiet && !options.json) std::cout << options.output << ": report.html, validate.json, CSV\n";

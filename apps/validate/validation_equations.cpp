@@ -19,8 +19,13 @@ ReportTable checksForPeople(const EquationReport& report, bool whole)
     ReportTable table{"Each function against its oracle", {"Eq.", "function", "error", "worst", "bound", "worst/bound", "ns"}, {}};
     if (whole) table.head.insert(table.head.end(), {"bound's name", "oracle", "domain", "mean", "evaluations", "worst at"});
     for (const EquationCheck& c : report.checks) {
-        std::vector<std::string> row = {(c.holds() ? "" : "!") + c.equation, c.function, c.errorKind, shortNumber(c.worst), shortNumber(c.bound),
-                                        c.bound > 0.0 ? shortNumber(c.worst / c.bound) : "", nanosecondsCell(c.nanoseconds)};
+        std::vector<std::string> row = {(c.holds() ? "" : "!") + c.equation,
+                                        c.function,
+                                        c.errorKind,
+                                        shortNumber(c.worst),
+                                        shortNumber(c.bound),
+                                        c.bound > 0.0 ? shortNumber(c.worst / c.bound) : "",
+                                        nanosecondsCell(c.nanoseconds)};
         if (whole) row.insert(row.end(), {c.boundName, c.oracle, c.domain, shortNumber(c.meanError), std::to_string(c.evaluations), c.worstInput});
         table.rows.push_back(std::move(row));
     }
@@ -38,8 +43,10 @@ ReportTable tradesForPeople(const EquationReport& report)
 
 ReportTable checksForPrograms(const EquationReport& report)
 {
-    ReportTable table{"", {"equation", "function", "oracle", "domain", "bound_name", "error_kind", "bound", "worst", "mean_error", "worst_input", "evaluations",
-                           "nanoseconds", "holds"}, {}};
+    ReportTable table{"",
+                      {"equation", "function", "oracle", "domain", "bound_name", "error_kind", "bound", "worst", "mean_error", "worst_input", "evaluations",
+                       "nanoseconds", "holds"},
+                      {}};
     for (const EquationCheck& c : report.checks)
         table.rows.push_back({c.equation, c.function, c.oracle, c.domain, c.boundName, c.errorKind, exactNumber(c.bound), exactNumber(c.worst),
                               exactNumber(c.meanError), c.worstInput, std::to_string(c.evaluations), exactNumber(c.nanoseconds), c.holds() ? "1" : "0"});
@@ -59,16 +66,34 @@ Json equationsJson(const EquationReport& report)
 {
     Json checks = Json::array(), trades = Json::array(), curves = Json::array();
     for (const EquationCheck& c : report.checks)
-        checks.push_back({{"equation", c.equation}, {"function", c.function}, {"oracle", c.oracle}, {"domain", c.domain}, {"boundName", c.boundName},
-                          {"errorKind", c.errorKind}, {"bound", c.bound}, {"worst", c.worst}, {"meanError", c.meanError}, {"worstInput", c.worstInput},
-                          {"evaluations", c.evaluations}, {"nanoseconds", c.nanoseconds}, {"holds", c.holds()}});
+        checks.push_back({{"equation", c.equation},
+                          {"function", c.function},
+                          {"oracle", c.oracle},
+                          {"domain", c.domain},
+                          {"boundName", c.boundName},
+                          {"errorKind", c.errorKind},
+                          {"bound", c.bound},
+                          {"worst", c.worst},
+                          {"meanError", c.meanError},
+                          {"worstInput", c.worstInput},
+                          {"evaluations", c.evaluations},
+                          {"nanoseconds", c.nanoseconds},
+                          {"holds", c.holds()}});
     for (const EquationTrade& t : report.trades)
-        trades.push_back({{"setting", t.setting}, {"choice", t.choice}, {"quantity", t.quantity}, {"bound", t.bound}, {"worst", t.worst},
-                          {"meanError", t.meanError}, {"bias", t.bias}, {"nanoseconds", t.nanoseconds}, {"bytes", t.bytes}});
+        trades.push_back({{"setting", t.setting},
+                          {"choice", t.choice},
+                          {"quantity", t.quantity},
+                          {"bound", t.bound},
+                          {"worst", t.worst},
+                          {"meanError", t.meanError},
+                          {"bias", t.bias},
+                          {"nanoseconds", t.nanoseconds},
+                          {"bytes", t.bytes}});
     for (const EquationCurve& curve : report.curves) {
         Json series = Json::array();
         for (const EquationSeries& s : curve.series) series.push_back({{"name", s.name}, {"x", s.x}, {"y", s.y}});
-        curves.push_back({{"equation", curve.equation}, {"title", curve.title}, {"xLabel", curve.xLabel}, {"yLabel", curve.yLabel}, {"series", std::move(series)}});
+        curves.push_back(
+            {{"equation", curve.equation}, {"title", curve.title}, {"xLabel", curve.xLabel}, {"yLabel", curve.yLabel}, {"series", std::move(series)}});
     }
     return {{"checks", std::move(checks)}, {"trades", std::move(trades)}, {"curves", std::move(curves)}};
 }
@@ -89,7 +114,8 @@ std::string verdictOf(const EquationReport& report)
     std::size_t broken = 0;
     std::string first;
     for (const EquationCheck& c : report.checks)
-        if (!c.holds() && ++broken == 1) first = "Eq. " + c.equation + ", " + c.function + ": " + shortNumber(c.worst) + " against " + shortNumber(c.bound) + " (" + c.boundName + ")";
+        if (!c.holds() && ++broken == 1)
+            first = "Eq. " + c.equation + ", " + c.function + ": " + shortNumber(c.worst) + " against " + shortNumber(c.bound) + " (" + c.boundName + ")";
     const std::string count = std::to_string(report.checks.size());
     if (broken == 0) return "Equations: all " + count + " bounds hold.";
     return "Equations: " + std::to_string(broken) + " of " + count + " bounds are broken; the first is " + first + ".";

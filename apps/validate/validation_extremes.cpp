@@ -13,10 +13,10 @@ using Json = nlohmann::ordered_json;
 std::string nameOf(Outcome outcome)
 {
     switch (outcome) {
-        case Outcome::held: return "held";
-        case Outcome::refused: return "refused";
-        case Outcome::skipped: return "skipped";
-        default: return "broken";
+    case Outcome::held: return "held";
+    case Outcome::refused: return "refused";
+    case Outcome::skipped: return "skipped";
+    default: return "broken";
     }
 }
 
@@ -59,13 +59,24 @@ Json extremesJson(const ExtremesReport& report)
 {
     Json results = Json::array(), curves = Json::array();
     for (const ExtremeResult& r : report.results)
-        results.push_back({{"name", r.name}, {"group", r.group}, {"what", r.what}, {"mustHold", r.mustHold}, {"storage", r.storage}, {"outcome", nameOf(r.outcome)},
+        results.push_back({{"name", r.name},
+                           {"group", r.group},
+                           {"what", r.what},
+                           {"mustHold", r.mustHold},
+                           {"storage", r.storage},
+                           {"outcome", nameOf(r.outcome)},
                            {"detail", r.detail}});
     for (const ExtremeCurve& c : report.curves) {
         Json series = Json::array();
         for (const CurveSeries& s : c.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}});
-        curves.push_back({{"name", c.name}, {"xLabel", c.xLabel}, {"yLabel", c.yLabel}, {"bound", c.bound}, {"degradesFrom", c.degradesFrom},
-                          {"degradesDownwards", c.degradesDownwards}, {"sentence", c.sentence}, {"series", std::move(series)}});
+        curves.push_back({{"name", c.name},
+                          {"xLabel", c.xLabel},
+                          {"yLabel", c.yLabel},
+                          {"bound", c.bound},
+                          {"degradesFrom", c.degradesFrom},
+                          {"degradesDownwards", c.degradesDownwards},
+                          {"sentence", c.sentence},
+                          {"series", std::move(series)}});
     }
     return {{"results", std::move(results)}, {"curves", std::move(curves)}};
 }

@@ -23,7 +23,8 @@ std::vector<NamedLadder> laddersOf(const LadderScene& scene)
 {
     std::vector<NamedLadder> ladders = {{"radiance", "Radiance of a cone sample, from Eq. 2 down", "W/(m^2 sr)", scene.radiance},
                                         {"visibility", "Opacity of a cone, from exact rays down", "", scene.visibility}};
-    if (!scene.emission.rungs.empty()) ladders.push_back({"emission", "Emission of a segment of estimator slab, from exact rays down", "W/(m^2 sr)", scene.emission});
+    if (!scene.emission.rungs.empty())
+        ladders.push_back({"emission", "Emission of a segment of estimator slab, from exact rays down", "W/(m^2 sr)", scene.emission});
     return ladders;
 }
 
@@ -41,7 +42,8 @@ ReportTable rungTable(const NamedLadder& named, bool whole)
     for (const RungStatistics& rung : named.ladder.rungs) {
         const DifferenceStatistics &step = rung.toAbove, &way = rung.toTop;
         std::vector<std::string> row = {rung.name};
-        for (const double value : {rung.mean, step.mean, step.rms, step.p50, step.p95, step.p99, step.max, way.mean, way.rms}) row.push_back(shortNumber(value));
+        for (const double value : {rung.mean, step.mean, step.rms, step.p50, step.p95, step.p99, step.max, way.mean, way.rms})
+            row.push_back(shortNumber(value));
         row.push_back(shortNumber(100.0 * rung.share) + " %");
         if (whole) {
             for (const double value : {way.p50, way.p95, way.p99, way.max, rung.weightedMean}) row.push_back(shortNumber(value));
@@ -75,14 +77,17 @@ ReportTable rungsForPrograms(const LadderScene& scene)
 
 ReportTable samplesForPrograms(const LadderScene& scene)
 {
-    ReportTable table{"", {"x", "y", "cone", "step", "centre_x", "centre_y", "centre_z", "radius", "distance", "weight", "level", "slope", "layers", "has_surface",
-                           "noise"}, {}};
+    ReportTable table{
+        "",
+        {"x", "y", "cone", "step", "centre_x", "centre_y", "centre_z", "radius", "distance", "weight", "level", "slope", "layers", "has_surface", "noise"},
+        {}};
     for (const RungInfo& rung : radianceRungs()) table.head.push_back("radiance " + rung.name);
     for (const RungInfo& rung : visibilityRungs()) table.head.push_back("opacity " + rung.name);
     for (const RungInfo& rung : emissionRungs()) table.head.push_back("emission " + rung.name);
     for (const LadderSample& s : scene.samples) {
         std::vector<std::string> row = {std::to_string(s.x), std::to_string(s.y), std::to_string(s.cone), std::to_string(s.step)};
-        for (const double value : {double(s.centre.x), double(s.centre.y), double(s.centre.z), double(s.radius), double(s.distance), s.weight, s.level, s.slope})
+        for (const double value :
+             {double(s.centre.x), double(s.centre.y), double(s.centre.z), double(s.radius), double(s.distance), s.weight, s.level, s.slope})
             row.push_back(exactNumber(value));
         row.insert(row.end(), {std::to_string(s.layers), s.hasSurface ? "1" : "0", exactNumber(s.noise)});
         for (const double value : s.radiance) row.push_back(exactNumber(value));
@@ -97,12 +102,19 @@ ReportTable worstTable(const LadderScene& scene, const NamedLadder& named)
 {
     ReportTable table{"Worst cases; look at one with: lrsm render SCENE --size " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
                           " --pixel x,y and the same settings",
-                      {"rung", "difference", "pixel", "cone", "step", "r_c", "level", "<n.l>"}, {}};
+                      {"rung", "difference", "pixel", "cone", "step", "r_c", "level", "<n.l>"},
+                      {}};
     for (const RungStatistics& rung : named.ladder.rungs) table.head.push_back(rung.name);
     for (const WorstCase& worst : named.ladder.worst) {
         const LadderSample& s = scene.samples[worst.sample];
-        std::vector<std::string> row = {worst.toTop ? worst.rung + ", whole way" : worst.rung, shortNumber(worst.difference), std::to_string(s.x) + "," + std::to_string(s.y),
-                                        std::to_string(s.cone), std::to_string(s.step), shortNumber(double(s.radius)), shortNumber(s.level), shortNumber(s.slope)};
+        std::vector<std::string> row = {worst.toTop ? worst.rung + ", whole way" : worst.rung,
+                                        shortNumber(worst.difference),
+                                        std::to_string(s.x) + "," + std::to_string(s.y),
+                                        std::to_string(s.cone),
+                                        std::to_string(s.step),
+                                        shortNumber(double(s.radius)),
+                                        shortNumber(s.level),
+                                        shortNumber(s.slope)};
         const double* values = &named.ladder == &scene.radiance ? s.radiance : &named.ladder == &scene.visibility ? s.opacity : s.emission;
         for (std::size_t i = 0; i < named.ladder.rungs.size(); ++i) row.push_back(shortNumber(values[i]));
         table.rows.push_back(std::move(row));
@@ -123,7 +135,12 @@ BarChart stepsChart(const NamedLadder& named)
 
 Chart distributionChart(const NamedLadder& named)
 {
-    Chart chart{"Distribution of each rung's step", std::string("difference to the rung above") + (*named.unit ? ", " : "") + named.unit, "share of the samples", false, true, {}};
+    Chart chart{"Distribution of each rung's step",
+                std::string("difference to the rung above") + (*named.unit ? ", " : "") + named.unit,
+                "share of the samples",
+                false,
+                true,
+                {}};
     const std::vector<double>& edges = named.ladder.histogramEdges;
     for (std::size_t r = 1; r < named.ladder.rungs.size(); ++r) {
         const RungStatistics& rung = named.ladder.rungs[r];
@@ -155,13 +172,15 @@ Chart curveChart(const NamedLadder& named, const LadderCurve& curve)
 std::string sceneHtml(const LadderScene& scene)
 {
     std::string html = headingHtml("Error ladder: " + scene.scene) + paragraphHtml(scene.verdict);
-    html += paragraphHtml(std::to_string(scene.samples.size()) + " of " + std::to_string(scene.lookups) + " lookups of a frame of " + std::to_string(scene.width) + "x" +
-                          std::to_string(scene.height) + ", each with the same probability; " + std::to_string(scene.withoutSurface) +
-                          " of them have no surface in their sphere, where Eq. 2 is undefined: they bring " + shortNumber(100.0 * scene.lightFromNothing) +
-                          " % of the light. Sampling noise of the top rung: " + shortNumber(scene.noise) + " rms.");
+    html +=
+        paragraphHtml(std::to_string(scene.samples.size()) + " of " + std::to_string(scene.lookups) + " lookups of a frame of " + std::to_string(scene.width) +
+                      "x" + std::to_string(scene.height) + ", each with the same probability; " + std::to_string(scene.withoutSurface) +
+                      " of them have no surface in their sphere, where Eq. 2 is undefined: they bring " + shortNumber(100.0 * scene.lightFromNothing) +
+                      " % of the light. Sampling noise of the top rung: " + shortNumber(scene.noise) + " rms.");
     for (const std::string& note : scene.notes) html += paragraphHtml(note);
     for (const NamedLadder& named : laddersOf(scene)) {
-        html += tableHtml(rungTable(named, true)) + foldedHtml("What each rung switches on", tableHtml(meaningTable(named))) + chartHtml(stepsChart(named)) + chartHtml(distributionChart(named));
+        html += tableHtml(rungTable(named, true)) + foldedHtml("What each rung switches on", tableHtml(meaningTable(named))) + chartHtml(stepsChart(named)) +
+                chartHtml(distributionChart(named));
         for (const LadderCurve& curve : named.ladder.curves) html += chartHtml(curveChart(named, curve));
         html += foldedHtml("Worst cases: " + std::string(named.key), tableHtml(worstTable(scene, named)));
     }
@@ -170,7 +189,14 @@ std::string sceneHtml(const LadderScene& scene)
 
 Json differenceJson(const DifferenceStatistics& d)
 {
-    return {{"mean", d.mean}, {"rms", d.rms}, {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}, {"max", d.max}, {"weightedMean", d.weightedMean}, {"quantiles", d.quantiles},
+    return {{"mean", d.mean},
+            {"rms", d.rms},
+            {"p50", d.p50},
+            {"p95", d.p95},
+            {"p99", d.p99},
+            {"max", d.max},
+            {"weightedMean", d.weightedMean},
+            {"quantiles", d.quantiles},
             {"histogram", d.histogram}};
 }
 
@@ -178,8 +204,13 @@ Json ladderJson(const LadderScene& scene, const NamedLadder& named)
 {
     Json rungs = Json::array(), worst = Json::array(), curves = Json::array();
     for (const RungStatistics& r : named.ladder.rungs)
-        rungs.push_back({{"name", r.name}, {"meaning", r.meaning}, {"mean", r.mean}, {"weightedMean", r.weightedMean}, {"share", r.share},
-                         {"toAbove", differenceJson(r.toAbove)}, {"toTop", differenceJson(r.toTop)}});
+        rungs.push_back({{"name", r.name},
+                         {"meaning", r.meaning},
+                         {"mean", r.mean},
+                         {"weightedMean", r.weightedMean},
+                         {"share", r.share},
+                         {"toAbove", differenceJson(r.toAbove)},
+                         {"toTop", differenceJson(r.toTop)}});
     for (const WorstCase& w : named.ladder.worst) {
         const LadderSample& s = scene.samples[w.sample];
         worst.push_back({{"rung", w.rung}, {"toTop", w.toTop}, {"difference", w.difference}, {"pixel", {s.x, s.y}}, {"cone", s.cone}, {"step", s.step}});
@@ -187,18 +218,34 @@ Json ladderJson(const LadderScene& scene, const NamedLadder& named)
     for (const LadderCurve& c : named.ladder.curves) {
         Json bins = Json::array();
         for (const CurveBin& b : c.bins)
-            bins.push_back({{"low", b.low}, {"high", b.high}, {"count", b.count}, {"meanToAbove", b.meanToAbove}, {"rmsToAbove", b.rmsToAbove},
-                            {"meanToTop", b.meanToTop}, {"rmsToTop", b.rmsToTop}});
+            bins.push_back({{"low", b.low},
+                            {"high", b.high},
+                            {"count", b.count},
+                            {"meanToAbove", b.meanToAbove},
+                            {"rmsToAbove", b.rmsToAbove},
+                            {"meanToTop", b.meanToTop},
+                            {"rmsToTop", b.rmsToTop}});
         curves.push_back({{"variable", c.variable}, {"unit", c.unit}, {"bins", std::move(bins)}});
     }
-    return {{"samples", named.ladder.samples}, {"verdict", named.ladder.verdict}, {"probabilities", ladderProbabilities()}, {"histogramEdges", named.ladder.histogramEdges},
-            {"rungs", std::move(rungs)}, {"curves", std::move(curves)}, {"worst", std::move(worst)}};
+    return {{"samples", named.ladder.samples},
+            {"verdict", named.ladder.verdict},
+            {"probabilities", ladderProbabilities()},
+            {"histogramEdges", named.ladder.histogramEdges},
+            {"rungs", std::move(rungs)},
+            {"curves", std::move(curves)},
+            {"worst", std::move(worst)}};
 }
 
 Json sceneLadderJson(const LadderScene& scene)
 {
-    Json json = {{"scene", scene.scene}, {"size", {scene.width, scene.height}}, {"samples", scene.samples.size()}, {"lookups", scene.lookups},
-                 {"withoutSurface", scene.withoutSurface}, {"lightFromNothing", scene.lightFromNothing}, {"noise", scene.noise}, {"notes", scene.notes}};
+    Json json = {{"scene", scene.scene},
+                 {"size", {scene.width, scene.height}},
+                 {"samples", scene.samples.size()},
+                 {"lookups", scene.lookups},
+                 {"withoutSurface", scene.withoutSurface},
+                 {"lightFromNothing", scene.lightFromNothing},
+                 {"noise", scene.noise},
+                 {"notes", scene.notes}};
     for (const NamedLadder& named : laddersOf(scene)) json[named.key] = ladderJson(scene, named);
     return json;
 }

@@ -13,12 +13,12 @@
 namespace lrsm {
 
 struct ValidationPart {
-    std::string name;                                     ///< key in validate.json: "equations"
+    std::string name;  ///< key in validate.json: "equations"
     bool held = false;
-    std::string verdict;                                  ///< one sentence; for ladders a line a scene
-    std::string text;                                     ///< tables for a terminal
-    std::string html;                                     ///< tables and plots for the page
-    std::vector<std::pair<std::string, std::string>> csv; ///< file name, content
+    std::string verdict;                                   ///< one sentence; for ladders a line a scene
+    std::string text;                                      ///< tables for a terminal
+    std::string html;                                      ///< tables and plots for the page
+    std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content
 };
 
 /// The part's data go to `json`.

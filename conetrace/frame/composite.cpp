@@ -27,8 +27,7 @@ IndirectLight shadeIndirect(const GBuffer& gbuffer, const Camera& camera, const 
             if (!lobe || gbuffer.specularColor.texels[i] == Vec3(0.0f)) continue;
             const Vec3 toEye = glm::normalize(directionToEye(camera, gbuffer.position.texels[i]));
             const float nDotV = glm::dot(gbuffer.normal.texels[i], toEye);
-            light.specular.texels[i] =
-                (*lobe)(gbuffer.specularColor.texels[i], nDotV, gbuffer.roughness.texels[i]) * specularRadiance.texels[i];
+            light.specular.texels[i] = (*lobe)(gbuffer.specularColor.texels[i], nDotV, gbuffer.roughness.texels[i]) * specularRadiance.texels[i];
         }
     });
     return light;
@@ -38,8 +37,7 @@ Image<Vec3> composite(const Image<Vec3>& direct, const IndirectLight& indirect)
 {
     Image<Vec3> sum(direct.width, direct.height);
     parallelFor(sum.texels.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            sum.texels[i] = direct.texels[i] + indirect.diffuse.texels[i] + indirect.specular.texels[i];
+        for (std::size_t i = begin; i < end; ++i) sum.texels[i] = direct.texels[i] + indirect.diffuse.texels[i] + indirect.specular.texels[i];
     });
     return sum;
 }

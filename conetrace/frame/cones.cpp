@@ -105,8 +105,8 @@ ConeSet makeConeSet(const ConeSettings& settings)
     set.count = settings.count;
     int first = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        ConeRing ring = slab ? slabRing(first, counts[i], settings.count, settings)
-                             : paperRing(static_cast<int>(i), static_cast<int>(counts.size()), counts[i], settings);
+        ConeRing ring =
+            slab ? slabRing(first, counts[i], settings.count, settings) : paperRing(static_cast<int>(i), static_cast<int>(counts.size()), counts[i], settings);
         ring.first = first;
         first += ring.count;
         set.rings.push_back(ring);

@@ -16,12 +16,12 @@
 namespace lrsm {
 
 struct ConeRing {
-    int count = 0;           ///< cones in the ring
-    int first = 0;           ///< index of its first cone
+    int count = 0;                               ///< cones in the ring
+    int first = 0;                               ///< index of its first cone
     float innerAngle = 0.0f, outerAngle = 0.0f;  ///< polar, radians
-    float axisAngle = 0.0f;  ///< of the cones' axes
-    float tanHalf = 0.0f;    ///< tangent of the traced half-angle
-    float weight = 0.0f;     ///< of one cone; weights of all cones sum to 1
+    float axisAngle = 0.0f;                      ///< of the cones' axes
+    float tanHalf = 0.0f;                        ///< tangent of the traced half-angle
+    float weight = 0.0f;                         ///< of one cone; weights of all cones sum to 1
 };
 
 /// How many cones each ring holds, innermost first; sums to `count` (1..256).
@@ -32,13 +32,10 @@ inline constexpr int kRotations = 16;  ///< directions alternate over blocks of 
 /// The directions of a frame: kRotations sets of the same cones, one for each pixel of a 4x4 block.
 struct ConeSet {
     std::vector<ConeRing> rings;
-    std::vector<Vec3> directions;   ///< tangent frame, unit; [rotation * count + cone]
+    std::vector<Vec3> directions;  ///< tangent frame, unit; [rotation * count + cone]
     int count = 0;
 
-    std::span<const Vec3> rotation(int index) const
-    {
-        return std::span(directions).subspan(std::size_t(index) * std::size_t(count), std::size_t(count));
-    }
+    std::span<const Vec3> rotation(int index) const { return std::span(directions).subspan(std::size_t(index) * std::size_t(count), std::size_t(count)); }
 };
 
 /// `paper`: the set above, equal in all 16 rotations, turned by azimuth, or moved within each cone's share of its ring.

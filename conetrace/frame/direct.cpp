@@ -2,9 +2,9 @@
 
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/brdf.h"
 #include "core/scene/light.h"
+#include "core/settings/settings_table.h"
 
 #include <cassert>
 
@@ -60,11 +60,9 @@ struct Shadowing {
     float visibility(std::size_t light, const Surface& surface, const LightSample& sample) const
     {
         switch (settings.shadows) {
-            case Shadows::hard:
-                return shadowFromRsm(rsms[light], surface.position, surface.geometricNormal, sample.toLight, settings.depthBiasTexels);
-            case Shadows::cone:
-                return shadowFromCone(*opacity, surface.position, surface.geometricNormal, sample.toLight, sample.distance, tanHalfAperture);
-            case Shadows::off: break;
+        case Shadows::hard: return shadowFromRsm(rsms[light], surface.position, surface.geometricNormal, sample.toLight, settings.depthBiasTexels);
+        case Shadows::cone: return shadowFromCone(*opacity, surface.position, surface.geometricNormal, sample.toLight, sample.distance, tanHalfAperture);
+        case Shadows::off: break;
         }
         return 1.0f;
     }
@@ -105,8 +103,7 @@ float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, 
     return rsm.depthLinear.at(x, y) + bias < p.depth ? 0.0f : 1.0f;
 }
 
-float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance,
-                     float tanHalfAperture)
+float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
 {
     const VoxelFrame& frame = opacity.base.frame;
     const Vec3 origin = frame.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
@@ -121,8 +118,8 @@ float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Ve
     return transmittance > kTransmittanceCutoff ? transmittance : 0.0f;
 }
 
-DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, const std::vector<Rsm>& rsms,
-                         const OpacityPyramid* opacity, const Requirements& needs, const DirectSettings& settings)
+DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, const std::vector<Rsm>& rsms, const OpacityPyramid* opacity,
+                         const Requirements& needs, const DirectSettings& settings)
 {
     assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);

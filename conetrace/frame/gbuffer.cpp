@@ -1,7 +1,7 @@
 #include "conetrace/frame/gbuffer.h"
 
-#include "core/base/errors.h"
 #include "core/base/elementary.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/raster/draw_scene.h"
 #include "core/scene/check_scene.h"
@@ -25,8 +25,7 @@ void setRow(Mat4& m, int row, const Vec3& axis, const Vec3& origin, double scale
 double farthestDepth(const Camera& camera, const Aabb& bounds)
 {
     if (bounds.empty()) return 0.0;
-    const DVec3 axis(camera.forward), farCorner(camera.forward.x > 0.0f ? bounds.max.x : bounds.min.x,
-                                                camera.forward.y > 0.0f ? bounds.max.y : bounds.min.y,
+    const DVec3 axis(camera.forward), farCorner(camera.forward.x > 0.0f ? bounds.max.x : bounds.min.x, camera.forward.y > 0.0f ? bounds.max.y : bounds.min.y,
                                                 camera.forward.z > 0.0f ? bounds.max.z : bounds.min.z);
     return glm::dot(axis, farCorner - DVec3(camera.position));
 }
@@ -60,8 +59,8 @@ void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& c
 
 std::size_t GBuffer::byteSize() const
 {
-    return position.byteSize() + geometricNormal.byteSize() + normal.byteSize() + albedo.byteSize() + specularColor.byteSize() +
-           roughness.byteSize() + depthLinear.byteSize() + objectId.byteSize();
+    return position.byteSize() + geometricNormal.byteSize() + normal.byteSize() + albedo.byteSize() + specularColor.byteSize() + roughness.byteSize() +
+           depthLinear.byteSize() + objectId.byteSize();
 }
 
 std::size_t GBuffer::predictBytes(int width, int height, bool specular)

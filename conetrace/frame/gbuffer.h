@@ -11,13 +11,13 @@ namespace lrsm {
 /// What the eye sees along each pixel's ray (pixelRay, core/scene/camera.h), one surface a pixel; structure of arrays, zero where nothing was drawn.
 struct GBuffer {
     int width = 0, height = 0;
-    Image<Vec3> position;         ///< world, metres
-    Image<Vec3> geometricNormal;  ///< unit, towards the eye
-    Image<Vec3> normal;           ///< unit shading normal, towards the eye
-    Image<Vec3> albedo;           ///< diffuse, linear
-    Image<Vec3> specularColor;    ///< F0; empty image when the scene has no specular part
-    Image<float> roughness;       ///< empty likewise
-    Image<float> depthLinear;     ///< metres along the viewing axis; 0 where empty
+    Image<Vec3> position;           ///< world, metres
+    Image<Vec3> geometricNormal;    ///< unit, towards the eye
+    Image<Vec3> normal;             ///< unit shading normal, towards the eye
+    Image<Vec3> albedo;             ///< diffuse, linear
+    Image<Vec3> specularColor;      ///< F0; empty image when the scene has no specular part
+    Image<float> roughness;         ///< empty likewise
+    Image<float> depthLinear;       ///< metres along the viewing axis; 0 where empty
     Image<std::uint32_t> objectId;  ///< mesh index + 1; 0 where empty
     RasterCounts raster;
 

@@ -1,7 +1,7 @@
 #include "conetrace/frame/schedule.h"
 
-#include "core/base/errors.h"
 #include "core/base/elementary.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <sstream>

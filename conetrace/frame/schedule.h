@@ -9,12 +9,12 @@
 namespace lrsm {
 
 struct MarchStep {
-    float middle = 0.0f;      ///< distance of the sample from the cone's apex
+    float middle = 0.0f;             ///< distance of the sample from the cone's apex
     float begin = 0.0f, end = 0.0f;  ///< of the segment it stands for
-    float diameter = 0.0f;    ///< of the sphere inscribed in the cone there
-    float level = 0.0f;       ///< voxel mip level, bias included, >= 0
-    float tapWidth = 0.0f;    ///< edge of a voxel at that level: 2^level
-    bool readVoxels = true;   ///< false in the first segment of `slab`: it starts inside the receiver's own voxels
+    float diameter = 0.0f;           ///< of the sphere inscribed in the cone there
+    float level = 0.0f;              ///< voxel mip level, bias included, >= 0
+    float tapWidth = 0.0f;           ///< edge of a voxel at that level: 2^level
+    bool readVoxels = true;          ///< false in the first segment of `slab`: it starts inside the receiver's own voxels
 };
 
 struct MarchSchedule {

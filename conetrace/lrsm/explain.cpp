@@ -23,29 +23,28 @@ struct TextRecorder {
 
     void cone(const ConeRay& ray, float weight, float tanHalf)
     {
-        text += format("\ncone %d  direction %.4f %.4f %.4f  weight %.5f  tan half-angle %.4f\n", cones++, double(ray.direction.x),
-                       double(ray.direction.y), double(ray.direction.z), double(weight), double(tanHalf));
+        text += format("\ncone %d  direction %.4f %.4f %.4f  weight %.5f  tan half-angle %.4f\n", cones++, double(ray.direction.x), double(ray.direction.y),
+                       double(ray.direction.z), double(weight), double(tanHalf));
         text += "  step  distance  diameter  level   density     alpha       transmittance  position\n";
         steps = 0;
     }
     void step(const StepRecord& r)
     {
-        text += format("  %4d  %8.3f  %8.3f  %5.2f  %10.3e  %10.3e  %10.6f     %.4f %.4f %.4f\n", steps++, double(r.step->middle),
-                       double(r.step->diameter), double(r.step->level), double(r.density), double(r.alpha), double(r.transmittance),
-                       double(r.pWorld.x), double(r.pWorld.y), double(r.pWorld.z));
+        text += format("  %4d  %8.3f  %8.3f  %5.2f  %10.3e  %10.3e  %10.6f     %.4f %.4f %.4f\n", steps++, double(r.step->middle), double(r.step->diameter),
+                       double(r.step->level), double(r.density), double(r.alpha), double(r.transmittance), double(r.pWorld.x), double(r.pWorld.y),
+                       double(r.pWorld.z));
     }
     void layer(int light, const LayerTerms& t, float transmittance)
     {
-        text += format("        light %d layer %d  R %.4g %.4g %.4g  A %.4f  N %.4f  mean %.4f  variance %.3e  V %.5f  f %.4f  T %.5f"
-                       "  -> %.4g %.4g %.4g\n",
-                       light, t.layer, double(t.radiance.x), double(t.radiance.y), double(t.radiance.z), double(t.alpha), double(t.normal),
-                       double(t.mean), double(t.variance), double(t.visibility), double(t.decay), double(transmittance), double(t.outgoing.x),
-                       double(t.outgoing.y), double(t.outgoing.z));
+        text += format(
+            "        light %d layer %d  R %.4g %.4g %.4g  A %.4f  N %.4f  mean %.4f  variance %.3e  V %.5f  f %.4f  T %.5f"
+            "  -> %.4g %.4g %.4g\n",
+            light, t.layer, double(t.radiance.x), double(t.radiance.y), double(t.radiance.z), double(t.alpha), double(t.normal), double(t.mean),
+            double(t.variance), double(t.visibility), double(t.decay), double(transmittance), double(t.outgoing.x), double(t.outgoing.y), double(t.outgoing.z));
     }
     void result(const ConeResult& r)
     {
-        text += format("  I = %.6g %.6g %.6g   opacity %.5f\n", double(r.radiance.x), double(r.radiance.y), double(r.radiance.z),
-                       double(r.opacity));
+        text += format("  I = %.6g %.6g %.6g   opacity %.5f\n", double(r.radiance.x), double(r.radiance.y), double(r.radiance.z), double(r.opacity));
     }
 
   private:
@@ -79,8 +78,8 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
            format("distances and diameters in voxels of %.6g m; N is the crossing rate g and V the segment's share w in the slab estimator\n",
                   double(world.opacity.base.frame.voxelSize)) +
            recorder.text +
-           format("\nirradiance (before the 4x4 filter) %.6g %.6g %.6g, opacity %.5f\n", double(diffuse.irradiance.x),
-                  double(diffuse.irradiance.y), double(diffuse.irradiance.z), double(diffuse.opacity)) +
+           format("\nirradiance (before the 4x4 filter) %.6g %.6g %.6g, opacity %.5f\n", double(diffuse.irradiance.x), double(diffuse.irradiance.y),
+                  double(diffuse.irradiance.z), double(diffuse.opacity)) +
            specular +
            format("%llu cones, %llu steps, %llu voxel taps, %llu layer samples\n", static_cast<unsigned long long>(counts.cones),
                   static_cast<unsigned long long>(counts.steps), static_cast<unsigned long long>(counts.voxelTaps),
@@ -89,8 +88,8 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
 
 }  // namespace
 
-std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
-                         const Requirements& needs, const ConeSettings& settings, int x, int y)
+std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                         const ConeSettings& settings, int x, int y)
 {
     if (!gbuffer.covered(gbuffer.position.index(x, y))) return format("pixel %d,%d: nothing is drawn here\n", x, y);
     const GatherPlan plan = planGather(opacity, needs, settings);

@@ -44,8 +44,8 @@ struct GatherOutput {
 
 /// Traces the pixels of one tile.
 template <Estimator estimator, class Sampler>
-void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX,
-                int tileY, const GatherOutput& to, ConeCounts& counts)
+void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
+                const GatherOutput& to, ConeCounts& counts)
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
@@ -76,8 +76,7 @@ void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& wo
     std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
     parallelFor(counts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t tile = begin; tile < end; ++tile)
-            gatherTile<estimator>(gbuffer, camera, world, sampler, plan, static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX,
-                                  out, counts[tile]);
+            gatherTile<estimator>(gbuffer, camera, world, sampler, plan, static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, out, counts[tile]);
     });
     for (const ConeCounts& tile : counts) out.gathered.counts += tile;
 }
@@ -133,8 +132,8 @@ Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& frame, const ConeS
     return receiver;
 }
 
-Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
-                    const Requirements& needs, const ConeSettings& settings, ConeRecord* record)
+Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                    const ConeSettings& settings, ConeRecord* record)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);

@@ -25,11 +25,11 @@ struct ConeRecord {
 
 /// Traces the cones of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
 /// `opacity` and `lrsms` are the world; `eye` decides the mirror direction. `record`, when given, is filled besides.
-Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
-                    const Requirements& needs, const ConeSettings& settings, ConeRecord* record = nullptr);
+Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                    const ConeSettings& settings, ConeRecord* record = nullptr);
 
 /// Text of how one pixel's cones went, step by step: what `--pixel` prints.
-std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms,
-                         const Requirements& needs, const ConeSettings& settings, int x, int y);
+std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                         const ConeSettings& settings, int x, int y);
 
 }  // namespace lrsm

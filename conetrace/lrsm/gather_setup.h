@@ -53,8 +53,8 @@ inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
 
 /// Diffuse cones of one pixel: E = pi * sum w_c I_c, averaged over setsPerPixel rotations.
 template <Estimator estimator, class Sampler, class Recorder>
-PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver,
-                          MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
+PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, MarchScratch& scratch,
+                          ConeCounts& counts, Recorder& recorder)
 {
     const Mat3 frame = frameFromNormal(receiver.normal);
     const int sets = world.settings.setsPerPixel;
@@ -85,8 +85,8 @@ inline float roughnessClass(float roughness)
 
 /// The specular cone about the mirror direction; below the surface it sees nothing.
 template <Estimator estimator, class Sampler, class Recorder>
-Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye,
-                    float roughness, MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
+Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness,
+                    MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
     const Vec3 mirror = 2.0f * glm::dot(receiver.normal, toEye) * receiver.normal - toEye;
     if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);

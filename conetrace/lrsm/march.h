@@ -32,7 +32,7 @@ struct GenericSampler {
 struct ConeRay {
     Vec3 originWorld{0.0f};
     Vec3 originVoxels{0.0f};
-    Vec3 direction{0.0f, 1.0f, 0.0f};  ///< unit
+    Vec3 direction{0.0f, 1.0f, 0.0f};       ///< unit
     Vec3 receiverNormal{0.0f, 1.0f, 0.0f};  ///< geometric, unit
 };
 
@@ -80,9 +80,15 @@ struct NoRecorder {
 /// A recorder may leave out `layer` (terms are then not collected), and may add `lookup(const ConeSample&)`: told once for each step at which the
 /// march asks the LRSMs for light, before it does.
 template <class Recorder>
-concept RecordsLayers = Recorder::active && requires(Recorder& recorder, const LayerTerms& terms) { recorder.layer(0, terms, 1.0f); };
+concept RecordsLayers = Recorder::active && requires(Recorder& recorder, const LayerTerms& terms)
+{
+    recorder.layer(0, terms, 1.0f);
+};
 template <class Recorder>
-concept RecordsLookups = Recorder::active && requires(Recorder& recorder, const ConeSample& sample) { recorder.lookup(sample); };
+concept RecordsLookups = Recorder::active && requires(Recorder& recorder, const ConeSample& sample)
+{
+    recorder.lookup(sample);
+};
 
 /// Distance, in base voxels, at which a ray leaves the grid's cube (0 if it never meets it).
 inline float gridExit(const Vec3& originVoxels, const Vec3& direction, int resolution)

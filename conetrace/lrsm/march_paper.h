@@ -23,8 +23,8 @@ inline float stepOpacity(float density, float lengthVoxels, const ConeSettings& 
 inline constexpr float kMarchPaperMaxError = 5e-5f;
 
 template <class Sampler, class Recorder>
-ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch&,
-                     ConeCounts& counts, Recorder& recorder)
+ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch&, ConeCounts& counts,
+                      Recorder& recorder)
 {
     const ConeSettings& settings = world.settings;
     const VoxelFrame& frame = world.opacity.base.frame;
@@ -52,8 +52,7 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
         if (alpha <= 0.0f) continue;
 
         // Outgoing radiance of the sample, all lights (Algorithm 1), and Eq. 1.
-        const ConeSample sample{pWorld, radius * frame.voxelSize,
-                                settings.push == 0.0f ? -ray.direction : glm::normalize(ray.originWorld - pWorld)};
+        const ConeSample sample{pWorld, radius * frame.voxelSize, settings.push == 0.0f ? -ray.direction : glm::normalize(ray.originWorld - pWorld)};
         if constexpr (RecordsLookups<Recorder>) recorder.lookup(sample);
         Vec3 outgoing(0.0f);
         for (std::size_t light = 0; light < world.lrsms.size(); ++light) {

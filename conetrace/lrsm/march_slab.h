@@ -76,8 +76,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const LayerRange& bounds = lrsm.ranges[std::size_t(layer)];
         if (at.depth + window < bounds.depthMin || at.depth - window > bounds.depthMax) continue;
         if (!footprint) {
-            footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel),
-                                      settings.filterFraction);
+            footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel), settings.filterFraction);
             if (outsideMap(*footprint)) return Vec3(0.0f);
         }
         ++counts.lrsmSamples;
@@ -108,8 +107,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         // The emitter's own voxels must not dim it: transmittance is taken in front of them.
         const float slant = std::max(nDotV / glm::length(normal), settings.emitterSlantCap);
         const float delay = (settings.emitterDelayTaps * step.tapWidth + settings.emitterDelayVoxels) / slant;
-        const float transmittance =
-            transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, index, step.middle - delay), settings);
+        const float transmittance = transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, index, step.middle - delay), settings);
         if (!(transmittance > 0.0f)) continue;
 
         const Float4 radianceSum = sampleRadiance(texels, *footprint);
@@ -135,8 +133,8 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
     const float exit = gridExit(ray.originVoxels, ray.direction, frame.resolution);
 
     ConeResult result;
-    float depth = 0.0f;        // F at the current segment's end
-    bool wasOccupied = true;   // the first segments may touch what the receiver stands on
+    float depth = 0.0f;       // F at the current segment's end
+    bool wasOccupied = true;  // the first segments may touch what the receiver stands on
     ++counts.cones;
     for (std::size_t i = 0; i < schedule.steps.size(); ++i) {
         const MarchStep& step = schedule.steps[i];
@@ -151,20 +149,17 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
             const Vec3 tap = sampler(ray.originVoxels + offset, step.level);
             density = densityAlong(world.opacity, tap, ray.direction);
             occupied = tap.x + tap.y + tap.z > 0.0f;
-            if (settings.subtractOwnPlane && density > 0.0f)
-                density = std::max(0.0f, density - ownPlaneDensity(world, ray, offset, step.tapWidth));
+            if (settings.subtractOwnPlane && density > 0.0f) density = std::max(0.0f, density - ownPlaneDensity(world, ray, offset, step.tapWidth));
         }
         depth += density * (step.end - step.begin);
         scratch.opticalDepth[i] = depth;
 
         const Vec3 pWorld = ray.originWorld + offset * frame.voxelSize;
-        if constexpr (Recorder::active)
-            recorder.step({&step, pWorld, density, density * (step.end - step.begin), transmittanceOf(depth, settings)});
+        if constexpr (Recorder::active) recorder.step({&step, pWorld, density, density * (step.end - step.begin), transmittanceOf(depth, settings)});
 
         // Where neither this nor the last tap met a voxel there is no surface to emit.
         if (occupied || wasOccupied) {
-            if constexpr (RecordsLookups<Recorder>)
-                recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * frame.voxelSize, -ray.direction});
+            if constexpr (RecordsLookups<Recorder>) recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * frame.voxelSize, -ray.direction});
             for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
                 result.radiance += slabEmission(world, light, ray, pWorld, schedule, i, scratch, counts, recorder);
         }

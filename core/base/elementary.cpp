@@ -1,7 +1,7 @@
 #include "core/base/elementary.h"
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -48,10 +48,10 @@ SinCos sinCos(double angleRadians)
     s *= r;
 
     switch (static_cast<std::int64_t>(k) & 3) {
-        case 0: return {s, c};
-        case 1: return {c, -s};
-        case 2: return {-s, -c};
-        default: return {-c, s};
+    case 0: return {s, c};
+    case 1: return {c, -s};
+    case 2: return {-s, -c};
+    default: return {-c, s};
     }
 }
 

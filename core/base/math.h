@@ -50,8 +50,7 @@ inline Mat3 frameFromNormal(const Vec3& normal)
     const float sign = std::copysign(1.0f, normal.z);
     const float a = -1.0f / (sign + normal.z);
     const float b = normal.x * normal.y * a;
-    return Mat3(Vec3(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
-                Vec3(b, sign + normal.y * normal.y * a, -normal.y), normal);
+    return Mat3(Vec3(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x), Vec3(b, sign + normal.y * normal.y * a, -normal.y), normal);
 }
 
 inline bool isFinite(const Vec3& v)

@@ -2,12 +2,12 @@
 
 #include "core/base/errors.h"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace lrsm {
 
@@ -61,8 +61,7 @@ OutputFolder::OutputFolder(const std::string& path)
 
     const fs::file_status status = fs::status(target_, error);
     if (fs::is_regular_file(status)) throw InputError(path, "is a file; -o needs a folder");
-    if (fs::exists(status) && !fs::is_directory(status))
-        throw MachineError(path, "cannot be written: it is a device, not a folder");
+    if (fs::exists(status) && !fs::is_directory(status)) throw MachineError(path, "cannot be written: it is a device, not a folder");
     if (!fs::exists(status))
         for (top_ = target_; top_ != top_.root_path() && !fs::exists(top_.parent_path(), error);) top_ = top_.parent_path();
 
@@ -70,7 +69,10 @@ OutputFolder::OutputFolder(const std::string& path)
     removeStaging();
 }
 
-OutputFolder::~OutputFolder() { removeStaging(); }
+OutputFolder::~OutputFolder()
+{
+    removeStaging();
+}
 
 void OutputFolder::makeStaging()
 {

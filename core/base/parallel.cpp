@@ -66,8 +66,7 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
 
 ThreadLimit::ThreadLimit(int threads)
 {
-    if (threads > 0)
-        control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    if (threads > 0) control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
 }
 
 ThreadLimit::~ThreadLimit()

@@ -15,8 +15,8 @@ constexpr Philox4 philox(Philox4 counter, std::array<std::uint32_t, 2> key)
     for (int round = 0; round < 10; ++round) {
         const std::uint64_t product0 = std::uint64_t(0xD2511F53u) * counter[0];
         const std::uint64_t product1 = std::uint64_t(0xCD9E8D57u) * counter[2];
-        counter = {std::uint32_t(product1 >> 32) ^ counter[1] ^ key[0], std::uint32_t(product1),
-                   std::uint32_t(product0 >> 32) ^ counter[3] ^ key[1], std::uint32_t(product0)};
+        counter = {std::uint32_t(product1 >> 32) ^ counter[1] ^ key[0], std::uint32_t(product1), std::uint32_t(product0 >> 32) ^ counter[3] ^ key[1],
+                   std::uint32_t(product0)};
         key[0] += 0x9E3779B9u;  // Weyl sequences of the golden ratio and sqrt(3) - 1
         key[1] += 0xBB67AE85u;
     }

@@ -14,7 +14,10 @@ namespace {
 
 constexpr Rgb8 kMagenta{255, 0, 255};
 
-float gainOf(float stops) { return static_cast<float>(exp2Exact(std::clamp(double(stops), -120.0, 120.0))); }
+float gainOf(float stops)
+{
+    return static_cast<float>(exp2Exact(std::clamp(double(stops), -120.0, 120.0)));
+}
 
 /// Piecewise linear through equally spaced sRGB colours; t in [0, 1].
 Rgb8 ramp(std::span<const std::array<float, 3>> colors, float t)

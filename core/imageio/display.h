@@ -33,6 +33,9 @@ Image<Vec3> onWhite(const Image<Vec3>& irradiance);
 Image<Rgb8> normalColor(const Image<Vec3>& normals);
 
 /// Rec. 709 luminance.
-inline float luminance(const Vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+inline float luminance(const Vec3& c)
+{
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 
 }  // namespace lrsm

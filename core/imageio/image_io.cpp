@@ -1,7 +1,7 @@
 #include "core/imageio/image_io.h"
 
-#include "core/base/errors.h"
 #include "core/base/elementary.h"
+#include "core/base/errors.h"
 #include "core/base/formats.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -153,8 +153,7 @@ std::vector<std::byte> encodeExr(const LayeredImage& image)
     OIIO::ImageSpec spec(image.width, image.height, 0, OIIO::TypeFloat);
     spec.channelnames.clear();
     for (const ImageLayer& layer : image.layers)
-        for (const std::string& channel : layer.channelNames)
-            spec.channelnames.push_back(layer.name.empty() ? channel : layer.name + "." + channel);
+        for (const std::string& channel : layer.channelNames) spec.channelnames.push_back(layer.name.empty() ? channel : layer.name + "." + channel);
     spec.nchannels = static_cast<int>(spec.channelnames.size());
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the library writes the time of day
@@ -194,8 +193,7 @@ LayeredImage readImage(const std::string& path)
     if (spec.deep) throw InputError(path, "is a deep picture, which is not supported");
 
     std::vector<float> pixels(std::size_t(spec.width) * std::size_t(spec.height) * std::size_t(spec.nchannels));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, pixels.data()))
-        throw InputError(path, "cannot be read: " + oneLine(input->geterror()));
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, pixels.data())) throw InputError(path, "cannot be read: " + oneLine(input->geterror()));
 
     LayeredImage image = splitIntoLayers(spec, pixels);
     if (!spec.format.is_floating_point())

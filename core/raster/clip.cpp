@@ -11,12 +11,12 @@ namespace {
 double planeDistance(const ClipVolume& volume, int plane, double x, double y, double z, double w)
 {
     switch (plane) {
-        case 0: return z;
-        case 1: return w - kMinW;
-        case 2: return volume.guardX * w + x;
-        case 3: return volume.guardX * w - x;
-        case 4: return volume.guardY * w + y;
-        default: return volume.guardY * w - y;
+    case 0: return z;
+    case 1: return w - kMinW;
+    case 2: return volume.guardX * w + x;
+    case 3: return volume.guardX * w - x;
+    case 4: return volume.guardY * w + y;
+    default: return volume.guardY * w - y;
     }
 }
 

@@ -30,8 +30,8 @@ inline constexpr int kMaxClipVertices = 3 + kClipPlanes;
 
 struct ClipVertex {
     double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-    double b1 = 0.0, b2 = 0.0;   ///< barycentrics in the triangle being clipped
-    std::uint32_t outside = 0;   ///< Outside bits
+    double b1 = 0.0, b2 = 0.0;  ///< barycentrics in the triangle being clipped
+    std::uint32_t outside = 0;  ///< Outside bits
 };
 
 struct ClipVolume {

@@ -57,9 +57,8 @@ SceneFragments drawScene(const Scene& scene, const Mat4& clipFromWorld, const Re
         if (!all.tested.empty()) std::fill_n(all.tested.begin() + t0, mesh.triangles.size(), std::uint8_t(material.alphaMask));
     }
 
-    RasterOutput drawn = rasterize({all.clipPositions, all.triangles, all.cull}, width, height, all.tested, [&](const Fragment& fragment) {
-        return passesAlphaTest(scene, hitOf(all.firstTriangle, fragment));
-    });
+    RasterOutput drawn = rasterize({all.clipPositions, all.triangles, all.cull}, width, height, all.tested,
+                                   [&](const Fragment& fragment) { return passesAlphaTest(scene, hitOf(all.firstTriangle, fragment)); });
     return {std::move(drawn.fragments), drawn.counts, std::move(all.firstTriangle)};
 }
 

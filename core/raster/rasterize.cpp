@@ -45,15 +45,13 @@ RasterOutput rasterize(const RasterInput& input, int width, int height, std::spa
     // Chunks of consecutive triangles, so that every tile can go through them in submission order.
     const std::size_t count = input.triangles.size();
     std::vector<Chunk> chunks((count + kChunkTriangles - 1) / kChunkTriangles);
-    parallelFor(count, kChunkTriangles, [&](std::size_t begin, std::size_t end) {
-        chunks[begin / kChunkTriangles] = setUpChunk(input, vertices, viewport, begin, end);
-    });
+    parallelFor(count, kChunkTriangles,
+                [&](std::size_t begin, std::size_t end) { chunks[begin / kChunkTriangles] = setUpChunk(input, vertices, viewport, begin, end); });
 
     RasterOutput output{Image<Fragment>(width, height), {}};
     const std::size_t tiles = std::size_t(viewport.tilesX()) * std::size_t(viewport.tilesY());
     parallelFor(tiles, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tile = begin; tile < end; ++tile)
-            drawTile(chunks, viewport, static_cast<int>(tile), tested, test, output.fragments);
+        for (std::size_t tile = begin; tile < end; ++tile) drawTile(chunks, viewport, static_cast<int>(tile), tested, test, output.fragments);
     });
 
     for (const Chunk& chunk : chunks) {

@@ -33,9 +33,9 @@ struct Fragment {
 enum class Cull { none, back };  ///< back: clockwise on screen (y down) is dropped, i.e. counter-clockwise in y-up is the front
 
 struct RasterInput {
-    std::span<const Vec4> clipPositions;                            ///< one a vertex
-    std::span<const std::array<std::uint32_t, 3>> triangles;        ///< into clipPositions
-    std::span<const Cull> cull;                                     ///< one a triangle; empty: Cull::none for all
+    std::span<const Vec4> clipPositions;                      ///< one a vertex
+    std::span<const std::array<std::uint32_t, 3>> triangles;  ///< into clipPositions
+    std::span<const Cull> cull;                               ///< one a triangle; empty: Cull::none for all
 };
 
 struct RasterCounts {
@@ -54,8 +54,8 @@ struct RasterOutput {
 /// Keeps the fragment? Called for covered samples that pass the depth test, for triangles marked in `tested`; must be thread-safe.
 using FragmentTest = std::function<bool(const Fragment&)>;
 
-/// Indices must be in range; width and height 1..16384 (InputError). Parallel over tiles; same bits for any number of threads. `tested` (one flag a triangle, empty: none) says where `test` is consulted.
-RasterOutput rasterize(const RasterInput& input, int width, int height, std::span<const std::uint8_t> tested = {},
-                       const FragmentTest& test = {});
+/// Indices must be in range; width and height 1..16384 (InputError). Parallel over tiles; same bits for any number of threads. `tested` (one flag a triangle,
+/// empty: none) says where `test` is consulted.
+RasterOutput rasterize(const RasterInput& input, int width, int height, std::span<const std::uint8_t> tested = {}, const FragmentTest& test = {});
 
 }  // namespace lrsm

@@ -29,8 +29,7 @@ std::int64_t twiceArea(const ScreenVertex& a, const ScreenVertex& b, const Scree
 enum class Fate { drawn, culled, outside };
 
 /// Culls one piece or appends it to the chunk. `piece`: barycentrics of the corners, or null when they are the submitted vertices.
-Fate addPiece(Chunk& chunk, const Viewport& viewport, std::uint32_t triangle, Cull cull, ScreenVertex a, ScreenVertex b, ScreenVertex c,
-              PieceCorners* piece)
+Fate addPiece(Chunk& chunk, const Viewport& viewport, std::uint32_t triangle, Cull cull, ScreenVertex a, ScreenVertex b, ScreenVertex c, PieceCorners* piece)
 {
     // Counter-clockwise in y-up is a negative area in y-down.
     const std::int64_t area = twiceArea(a, b, c);
@@ -85,8 +84,7 @@ Fate addClipped(Chunk& chunk, const Viewport& viewport, const RasterInput& input
     return fate;
 }
 
-void addTriangle(Chunk& chunk, const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport,
-                 std::uint32_t triangle)
+void addTriangle(Chunk& chunk, const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::uint32_t triangle)
 {
     const auto& index = input.triangles[triangle];
     const ScreenVertex &a = vertices[index[0]], &b = vertices[index[1]], &c = vertices[index[2]];
@@ -139,16 +137,13 @@ void binIntoTiles(Chunk& chunk, const Viewport& viewport)
 {
     const std::size_t tiles = std::size_t(viewport.tilesX()) * std::size_t(viewport.tilesY());
     chunk.tileOffset.assign(tiles + 1, 0);
-    for (const SetupTriangle& triangle : chunk.setup)
-        forEachTile(triangle, viewport, [&](int tile) { ++chunk.tileOffset[std::size_t(tile) + 1]; });
+    for (const SetupTriangle& triangle : chunk.setup) forEachTile(triangle, viewport, [&](int tile) { ++chunk.tileOffset[std::size_t(tile) + 1]; });
     for (std::size_t tile = 0; tile < tiles; ++tile) chunk.tileOffset[tile + 1] += chunk.tileOffset[tile];
 
     // Filling moves each tile's begin to its end; the shift back by one tile restores the begins.
     chunk.tileItems.resize(chunk.tileOffset[tiles]);
     for (std::size_t i = 0; i < chunk.setup.size(); ++i)
-        forEachTile(chunk.setup[i], viewport, [&](int tile) {
-            chunk.tileItems[chunk.tileOffset[std::size_t(tile)]++] = static_cast<std::uint16_t>(i);
-        });
+        forEachTile(chunk.setup[i], viewport, [&](int tile) { chunk.tileItems[chunk.tileOffset[std::size_t(tile)]++] = static_cast<std::uint16_t>(i); });
     for (std::size_t tile = tiles; tile > 0; --tile) chunk.tileOffset[tile] = chunk.tileOffset[tile - 1];
     chunk.tileOffset[0] = 0;
 }
@@ -167,8 +162,7 @@ ScreenVertex projectVertex(const Viewport& viewport, double x, double y, double 
     return v;
 }
 
-Chunk setUpChunk(const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::size_t begin,
-                 std::size_t end)
+Chunk setUpChunk(const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::size_t begin, std::size_t end)
 {
     Chunk chunk;
     chunk.setup.reserve(end - begin);

@@ -11,8 +11,8 @@
 /// From clip-space vertices to triangles on the 1/256 pixel grid, binned into tiles (internal to the rasterizer).
 namespace lrsm::raster {
 
-inline constexpr int kSubPixels = 256;      ///< grid steps a pixel
-inline constexpr int kTileSize = 64;        ///< pixels
+inline constexpr int kSubPixels = 256;        ///< grid steps a pixel
+inline constexpr int kTileSize = 64;          ///< pixels
 inline constexpr int kChunkTriangles = 4096;  ///< triangles set up by one task; pieces of a chunk are counted in 16 bits
 
 /// A vertex on the screen. Only valid when none of kMustClip | kNotFinite is set.
@@ -93,7 +93,6 @@ struct Chunk {
 };
 
 /// Clips, culls, sets up and bins triangles [begin, end).
-Chunk setUpChunk(const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::size_t begin,
-                 std::size_t end);
+Chunk setUpChunk(const RasterInput& input, const std::vector<ScreenVertex>& vertices, const Viewport& viewport, std::size_t begin, std::size_t end);
 
 }  // namespace lrsm::raster

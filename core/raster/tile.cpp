@@ -92,8 +92,7 @@ class TriangleInTile {
     bool blockOutside(int x0, int y0, int x1, int y1) const
     {
         bool outside = false;
-        for (int i = 0; i < 3; ++i)
-            outside = outside || start_[i] + stepX_[i] * (stepX_[i] > 0 ? x1 : x0) + stepY_[i] * (stepY_[i] > 0 ? y1 : y0) < 0;
+        for (int i = 0; i < 3; ++i) outside = outside || start_[i] + stepX_[i] * (stepX_[i] > 0 ? x1 : x0) + stepY_[i] * (stepY_[i] > 0 ? y1 : y0) < 0;
         return outside;
     }
 
@@ -147,8 +146,8 @@ void drawTriangle(TileBuffers& buffers, const Chunk& chunk, std::uint32_t chunkI
 
 }  // namespace
 
-void drawTile(const std::vector<Chunk>& chunks, const Viewport& viewport, int tile, std::span<const std::uint8_t> tested,
-              const FragmentTest& test, Image<Fragment>& out)
+void drawTile(const std::vector<Chunk>& chunks, const Viewport& viewport, int tile, std::span<const std::uint8_t> tested, const FragmentTest& test,
+              Image<Fragment>& out)
 {
     TileBuffers buffers;
     buffers.x0 = tile % viewport.tilesX() * kTileSize;

@@ -181,7 +181,8 @@ std::string chartStyle()
            "figure.chart div { height: 360px; } figure.chart figcaption { font-weight: 600; }"
            "#chart-tip { position: fixed; z-index: 9; pointer-events: none; max-width: 360px; padding: .4em .6em; border: 1px solid #888; border-radius: 4px;"
            " background: Canvas; color: CanvasText; font-size: 13px; line-height: 1.3; }"
-           "#chart-tip div { white-space: pre-line; } #chart-tip img { max-width: 160px; margin: 4px 4px 0 0; vertical-align: top; } #chart-tip.many img { max-width: 112px; }\n";
+           "#chart-tip div { white-space: pre-line; } #chart-tip img { max-width: 160px; margin: 4px 4px 0 0; vertical-align: top; } #chart-tip.many img { "
+           "max-width: 112px; }\n";
 }
 
 }  // namespace lrsm

@@ -9,14 +9,14 @@ namespace lrsm {
 
 struct ChartSeries {
     std::string label;
-    std::vector<double> x, y;         ///< of equal length; a point that is not finite (or not positive on a logarithmic axis) is left out
+    std::vector<double> x, y;             ///< of equal length; a point that is not finite (or not positive on a logarithmic axis) is left out
     std::vector<std::string> hover = {};  ///< a text a point, shown under the pointer; lines end with "\n"; may be empty
-    bool line = true;                 ///< joined in order of x; else points alone
+    bool line = true;                     ///< joined in order of x; else points alone
     bool dashed = false;
     std::vector<std::vector<int>> pictures = {};  ///< a list a point, of indices into chartPictures(), shown below the text; may be empty
-    std::string marker = {};          ///< "circle" (as is empty), "triangle", "rect", "rectRot", "star", "cross", "crossRot", "line"
-    double markerSize = -1.0;         ///< radius, CSS pixels; 0: no points; below 0: 2 on lines, 4 elsewhere
-    std::string colour = {};          ///< "#rrggbb"; empty: the palette's, by the series' place
+    std::string marker = {};                      ///< "circle" (as is empty), "triangle", "rect", "rectRot", "star", "cross", "crossRot", "line"
+    double markerSize = -1.0;                     ///< radius, CSS pixels; 0: no points; below 0: 2 on lines, 4 elsewhere
+    std::string colour = {};                      ///< "#rrggbb"; empty: the palette's, by the series' place
 };
 
 struct Chart {

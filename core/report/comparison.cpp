@@ -38,8 +38,8 @@ for (const box of document.querySelectorAll('.compare')) {
 
 std::string sectionHtml(const ComparedLayer& section)
 {
-    std::string html = headingHtml(section.title) + "<div class=\"compare\"><div class=\"pair\">" + pictureHtml(section.reference) +
-                       "<div class=\"over\">" + pictureHtml(section.test) + "</div></div>\n" +
+    std::string html = headingHtml(section.title) + "<div class=\"compare\"><div class=\"pair\">" + pictureHtml(section.reference) + "<div class=\"over\">" +
+                       pictureHtml(section.test) + "</div></div>\n" +
                        "<div class=\"controls\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"slider\"> "
                        "<label><input type=\"checkbox\"> flicker</label> <output></output></div></div>\n";
     for (const ReportTable& table : section.tables) html += tableHtml(table);

@@ -39,11 +39,11 @@ std::string htmlEscaped(std::string_view text)
 {
     std::string result;
     for (const char letter : text) switch (letter) {
-            case '&': result += "&amp;"; break;
-            case '<': result += "&lt;"; break;
-            case '>': result += "&gt;"; break;
-            case '"': result += "&quot;"; break;
-            default: result += letter;
+        case '&': result += "&amp;"; break;
+        case '<': result += "&lt;"; break;
+        case '>': result += "&gt;"; break;
+        case '"': result += "&quot;"; break;
+        default: result += letter;
         }
     return result;
 }
@@ -100,8 +100,8 @@ std::string preformattedHtml(std::string_view text)
 std::string htmlPage(const HtmlPage& page)
 {
     std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n" +
-                       element("title", page.title) + "\n<style>" + std::string(kStyle) + page.style + "</style></head>\n<body>" +
-                       element("h1", page.title) + "\n" + paragraphHtml(page.summary) + page.bodyHtml;
+                       element("title", page.title) + "\n<style>" + std::string(kStyle) + page.style + "</style></head>\n<body>" + element("h1", page.title) +
+                       "\n" + paragraphHtml(page.summary) + page.bodyHtml;
     if (!page.script.empty()) html += "<script>" + page.script + "</script>";
     return html + "</body></html>\n";
 }

@@ -37,10 +37,10 @@ std::string preformattedHtml(std::string_view text);
 
 struct HtmlPage {
     std::string title;
-    std::string summary;     ///< a sentence or two, plain text
-    std::string bodyHtml;    ///< parts made by the functions above, in order
-    std::string style = {};  ///< CSS besides the common one
-    std::string script = {}; ///< JavaScript at the page's end
+    std::string summary;      ///< a sentence or two, plain text
+    std::string bodyHtml;     ///< parts made by the functions above, in order
+    std::string style = {};   ///< CSS besides the common one
+    std::string script = {};  ///< JavaScript at the page's end
 };
 
 /// The page works without a network.

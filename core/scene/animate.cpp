@@ -57,10 +57,10 @@ void applyChannel(const Channel& channel, float time, LocalTransform& local, std
     std::vector<double> value(std::size_t(channel.width));
     sampleChannel(channel, time, value);
     switch (channel.property) {
-        case Property::translation: local.translation = {value[0], value[1], value[2]}; break;
-        case Property::scale: local.scale = {value[0], value[1], value[2]}; break;
-        case Property::rotation: local.rotation = {value[0], value[1], value[2], value[3]}; break;
-        case Property::weights: weights.assign(value.begin(), value.end()); break;
+    case Property::translation: local.translation = {value[0], value[1], value[2]}; break;
+    case Property::scale: local.scale = {value[0], value[1], value[2]}; break;
+    case Property::rotation: local.rotation = {value[0], value[1], value[2], value[3]}; break;
+    case Property::weights: weights.assign(value.begin(), value.end()); break;
     }
 }
 
@@ -88,9 +88,7 @@ void sampleChannel(const Channel& channel, float time, std::span<double> value)
     const Span s = spanAt(channel.times, time);
     const bool cubic = channel.interpolation == Interpolation::cubicSpline;
     // part: 0 in-tangent, 1 value, 2 out-tangent for splines.
-    const auto key = [&](std::size_t k, std::size_t part, std::size_t c) {
-        return double(channel.values[cubic ? (3 * k + part) * width + c : k * width + c]);
-    };
+    const auto key = [&](std::size_t k, std::size_t part, std::size_t c) { return double(channel.values[cubic ? (3 * k + part) * width + c : k * width + c]); };
     const bool rotation = channel.property == Property::rotation;
 
     if (s.k0 == s.k1 || channel.interpolation == Interpolation::step) {

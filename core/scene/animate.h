@@ -8,8 +8,8 @@
 namespace lrsm::gltf {
 
 struct Pose {
-    std::vector<DMat4> worldFromNode;          ///< one a node
-    std::vector<std::vector<float>> weights;   ///< morph weights, one list a node; empty where the node has no targets
+    std::vector<DMat4> worldFromNode;         ///< one a node
+    std::vector<std::vector<float>> weights;  ///< morph weights, one list a node; empty where the node has no targets
 };
 
 /// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds.

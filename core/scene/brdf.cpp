@@ -46,8 +46,7 @@ Vec2 uvAt(const Triangle& triangle, const TextureUse& use)
 Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
 {
     Vec4 color = material.baseColor;
-    if (const TextureUse& use = material.baseColorTexture)
-        color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
+    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
     if (!triangle.mesh.colors.empty()) color *= triangle.interpolate(triangle.mesh.colors);
     for (int c = 0; c < 4; ++c) color[c] = color[c] > 0.0f ? std::min(color[c], 1.0f) : 0.0f;  // NaN too
     return color;
@@ -91,8 +90,7 @@ Vec4 tangentFromUv(const Triangle& triangle, const TextureUse& use)
 Vec3 applyNormalMap(const Scene& scene, const Material& material, const Triangle& triangle, const Vec3& n)
 {
     const TextureUse& use = material.normalTexture;
-    const Vec4 tangent =
-        triangle.mesh.tangents.empty() ? tangentFromUv(triangle, use) : triangle.interpolate(triangle.mesh.tangents);
+    const Vec4 tangent = triangle.mesh.tangents.empty() ? tangentFromUv(triangle, use) : triangle.interpolate(triangle.mesh.tangents);
     const Vec3 t = normalizedOr(DVec3(tangent) - DVec3(n) * glm::dot(DVec3(tangent), DVec3(n)), Vec3(0.0f));
     if (tangent.w == 0.0f || t == Vec3(0.0f)) return n;
     const Vec3 b = glm::cross(n, t) * std::copysign(1.0f, tangent.w);

@@ -33,13 +33,11 @@ Scene cornellBox(const Material& tallBlockMaterial)
     const auto mm = [](float x, float y, float z) { return 0.001f * Vec3(x, y, z); };
 
     Mesh& shell = addMesh(scene, diffuseMaterial("white", kWhite, true));
-    addQuad(shell, mm(552.8f, 0, 0), mm(0, 0, 0), mm(0, 0, 559.2f), mm(549.6f, 0, 559.2f));                              // floor
-    addQuad(shell, mm(556.0f, 548.8f, 0), mm(556.0f, 548.8f, 559.2f), mm(0, 548.8f, 559.2f), mm(0, 548.8f, 0));          // ceiling
-    addQuad(shell, mm(549.6f, 0, 559.2f), mm(0, 0, 559.2f), mm(0, 548.8f, 559.2f), mm(556.0f, 548.8f, 559.2f));          // back
-    addQuad(addMesh(scene, diffuseMaterial("green", kGreen, true)), mm(0, 0, 559.2f), mm(0, 0, 0), mm(0, 548.8f, 0),
-            mm(0, 548.8f, 559.2f));
-    addQuad(addMesh(scene, diffuseMaterial("red", kRed, true)), mm(552.8f, 0, 0), mm(549.6f, 0, 559.2f), mm(556.0f, 548.8f, 559.2f),
-            mm(556.0f, 548.8f, 0));
+    addQuad(shell, mm(552.8f, 0, 0), mm(0, 0, 0), mm(0, 0, 559.2f), mm(549.6f, 0, 559.2f));                      // floor
+    addQuad(shell, mm(556.0f, 548.8f, 0), mm(556.0f, 548.8f, 559.2f), mm(0, 548.8f, 559.2f), mm(0, 548.8f, 0));  // ceiling
+    addQuad(shell, mm(549.6f, 0, 559.2f), mm(0, 0, 559.2f), mm(0, 548.8f, 559.2f), mm(556.0f, 548.8f, 559.2f));  // back
+    addQuad(addMesh(scene, diffuseMaterial("green", kGreen, true)), mm(0, 0, 559.2f), mm(0, 0, 0), mm(0, 548.8f, 0), mm(0, 548.8f, 559.2f));
+    addQuad(addMesh(scene, diffuseMaterial("red", kRed, true)), mm(552.8f, 0, 0), mm(549.6f, 0, 559.2f), mm(556.0f, 548.8f, 559.2f), mm(556.0f, 548.8f, 0));
 
     const std::array<Vec2, 4> shortBlock = {0.001f * Vec2(130, 65), 0.001f * Vec2(82, 225), 0.001f * Vec2(240, 272), 0.001f * Vec2(290, 114)};
     const std::array<Vec2, 4> tallBlock = {0.001f * Vec2(423, 247), 0.001f * Vec2(265, 296), 0.001f * Vec2(314, 456), 0.001f * Vec2(472, 406)};
@@ -95,8 +93,8 @@ Scene atrium()
     static constexpr std::array<Vec3, 3> kCurtains = {Vec3(0.6f, 0.06f, 0.05f), Vec3(0.08f, 0.35f, 0.1f), Vec3(0.07f, 0.1f, 0.5f)};
     for (int i = 0; i < 5; ++i) {
         const float x = -8.0f + 3.2f * float(i);
-        addQuad(addMesh(scene, diffuseMaterial("curtain " + std::to_string(i), kCurtains[std::size_t(i) % 3], true)),
-                Vec3(x + 0.5f, 1.2f, 2.6f), Vec3(x + 2.7f, 1.2f, 2.6f), Vec3(x + 2.7f, 4, 2.6f), Vec3(x + 0.5f, 4, 2.6f));
+        addQuad(addMesh(scene, diffuseMaterial("curtain " + std::to_string(i), kCurtains[std::size_t(i) % 3], true)), Vec3(x + 0.5f, 1.2f, 2.6f),
+                Vec3(x + 2.7f, 1.2f, 2.6f), Vec3(x + 2.7f, 4, 2.6f), Vec3(x + 0.5f, 4, 2.6f));
     }
     scene.lights.push_back(directionalLight(Vec3(0.25f, -1.0f, 0.55f), Vec3(10.0f)));
     scene.cameras.push_back(lookAt(Vec3(-9, 1.7f, -1.2f), Vec3(5, 2.0f, 1.2f), Vec3(0, 1, 0), 60.0f * kDegree));

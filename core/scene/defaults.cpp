@@ -53,8 +53,10 @@ void addDefaultCamera(Scene& scene)
 
     // From the front, right and above; along the thin axis where the scene is a sheet, a little aside so that no axis is hit exactly.
     Vec3 toCamera(0.5f, 0.35f, 1.0f);
-    if (extent.y < 0.01f * largest) toCamera = Vec3(0.2f, 1.0f, 0.5f);
-    else if (extent.x < 0.01f * largest) toCamera = Vec3(1.0f, 0.25f, 0.2f);
+    if (extent.y < 0.01f * largest)
+        toCamera = Vec3(0.2f, 1.0f, 0.5f);
+    else if (extent.x < 0.01f * largest)
+        toCamera = Vec3(1.0f, 0.25f, 0.2f);
     toCamera = normalized(toCamera);
 
     // The box's enclosing sphere touches the sides of the field of view.

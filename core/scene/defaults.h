@@ -8,8 +8,7 @@ namespace lrsm {
 
 /// The notes that the two functions below leave.
 inline constexpr std::string_view kDefaultLightNote = "no lights in the file: a sun of 10 W/m^2 from above and the front is assumed";
-inline constexpr std::string_view kDefaultCameraNote =
-    "no camera in the file: one that frames the scene from the front, right and above is assumed";
+inline constexpr std::string_view kDefaultCameraNote = "no camera in the file: one that frames the scene from the front, right and above is assumed";
 
 /// The `up` of a light that travels along `direction` (unit): world up made orthogonal to it, or -z for a light that shines
 /// (nearly) straight up or down. Unit.

@@ -16,7 +16,7 @@ namespace gltf {
 namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 28;  // three split vertices each stay below 2^32
-constexpr double kMaxExtent = 1e15;  // metres; beyond it products of coordinates leave float's range
+constexpr double kMaxExtent = 1e15;                          // metres; beyond it products of coordinates leave float's range
 
 /// stb decodes 16-bit files to 16 bits; 8 are kept, rounded to nearest.
 Image<Rgba8> toRgba8(const tinygltf::Image& decoded)
@@ -28,8 +28,7 @@ Image<Rgba8> toRgba8(const tinygltf::Image& decoded)
         const unsigned value = decoded.image[2 * i] | unsigned(decoded.image[2 * i + 1]) << 8;
         return static_cast<unsigned char>((value * 255u + 32767u) / 65535u);
     };
-    for (std::size_t i = 0; i < image.texels.size(); ++i)
-        image.texels[i] = {channel(4 * i), channel(4 * i + 1), channel(4 * i + 2), channel(4 * i + 3)};
+    for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = {channel(4 * i), channel(4 * i + 1), channel(4 * i + 2), channel(4 * i + 3)};
     return image;
 }
 
@@ -99,8 +98,8 @@ void checkOptions(const Asset& asset, const LoadOptions& options)
     if (options.animation < -1) throw InputError("animation", "must be an index, or -1 for none");
     // Asking for the first animation is the default, so it is no error where there is none.
     if (options.animation > 0 && std::size_t(options.animation) >= asset.animations.size())
-        throw InputError(asset.file + ": animations", "there is no animation " + std::to_string(options.animation) + ", only " +
-                                                          std::to_string(asset.animations.size()));
+        throw InputError(asset.file + ": animations",
+                         "there is no animation " + std::to_string(options.animation) + ", only " + std::to_string(asset.animations.size()));
 }
 
 /// Instances multiply triangles; counted before any is made.
@@ -184,13 +183,12 @@ const Camera& findCamera(const Scene& scene, const std::string& nameOrIndex)
 {
     for (const Camera& camera : scene.cameras)
         if (camera.name == nameOrIndex) return camera;
-    const bool number = !nameOrIndex.empty() && nameOrIndex.size() < 9 &&
-                        std::all_of(nameOrIndex.begin(), nameOrIndex.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool number =
+        !nameOrIndex.empty() && nameOrIndex.size() < 9 && std::all_of(nameOrIndex.begin(), nameOrIndex.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (number && std::stoul(nameOrIndex) < scene.cameras.size()) return scene.cameras[std::stoul(nameOrIndex)];
 
     std::string available;
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-        available += (i ? ", " : "") + std::to_string(i) + " \"" + scene.cameras[i].name + "\"";
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) available += (i ? ", " : "") + std::to_string(i) + " \"" + scene.cameras[i].name + "\"";
     throw InputError("camera \"" + nameOrIndex + "\"", "there is none of that name or index; there are: " + (available.empty() ? "none" : available));
 }
 

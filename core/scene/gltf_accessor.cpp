@@ -36,24 +36,22 @@ T load(const unsigned char* bytes)
 std::uint32_t loadIndex(const unsigned char* bytes, int componentType)
 {
     switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *bytes;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes);
-        default: return load<std::uint32_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *bytes;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes);
+    default: return load<std::uint32_t>(bytes);
     }
 }
 
 float loadFloat(const unsigned char* bytes, const Layout& layout)
 {
-    const auto scaled = [&](auto value, float max) {
-        return layout.normalized ? std::max(float(value) / max, -1.0f) : float(value);
-    };
+    const auto scaled = [&](auto value, float max) { return layout.normalized ? std::max(float(value) / max, -1.0f) : float(value); };
     switch (layout.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return scaled(load<std::int8_t>(bytes), 127.0f);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return scaled(*bytes, 255.0f);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return scaled(load<std::int16_t>(bytes), 32767.0f);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return scaled(load<std::uint16_t>(bytes), 65535.0f);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return float(load<std::uint32_t>(bytes));
-        default: return load<float>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return scaled(load<std::int8_t>(bytes), 127.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return scaled(*bytes, 255.0f);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return scaled(load<std::int16_t>(bytes), 32767.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return scaled(load<std::uint16_t>(bytes), 65535.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return float(load<std::uint32_t>(bytes));
+    default: return load<float>(bytes);
     }
 }
 
@@ -76,8 +74,7 @@ void forEachElement(const Document& document, int index, const Store& store)
     const unsigned char* values = viewData(document, sparse.values.bufferView, std::size_t(sparse.values.byteOffset));
     for (std::size_t i = 0; i < std::size_t(sparse.count); ++i) {
         const std::size_t element = loadIndex(indices + i * indexSize, sparse.indices.componentType);
-        if (element >= accessor.count)
-            document.fail(at("accessors", std::size_t(index)) + ".sparse.indices", std::to_string(element) + " is no element");
+        if (element >= accessor.count) document.fail(at("accessors", std::size_t(index)) + ".sparse.indices", std::to_string(element) + " is no element");
         store(element, values + i * layout.elementSize());
     }
 }
@@ -89,22 +86,22 @@ void requireFormat(const Document& document, int accessor, std::string_view allo
     const tinygltf::Accessor& a = document.model.accessors[std::size_t(accessor)];
     const auto typeName = [&]() -> std::string {
         switch (a.type) {
-            case TINYGLTF_TYPE_SCALAR: return "SCALAR";
-            case TINYGLTF_TYPE_VEC2: return "VEC2";
-            case TINYGLTF_TYPE_VEC3: return "VEC3";
-            case TINYGLTF_TYPE_VEC4: return "VEC4";
-            default: return "MAT";
+        case TINYGLTF_TYPE_SCALAR: return "SCALAR";
+        case TINYGLTF_TYPE_VEC2: return "VEC2";
+        case TINYGLTF_TYPE_VEC3: return "VEC3";
+        case TINYGLTF_TYPE_VEC4: return "VEC4";
+        default: return "MAT";
         }
     };
     const auto componentName = [&]() -> std::string {
         const std::string n = a.normalized ? "n" : "";
         switch (a.componentType) {
-            case TINYGLTF_COMPONENT_TYPE_BYTE: return n + "s8";
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return n + "u8";
-            case TINYGLTF_COMPONENT_TYPE_SHORT: return n + "s16";
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return n + "u16";
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return n + "u32";
-            default: return "f";
+        case TINYGLTF_COMPONENT_TYPE_BYTE: return n + "s8";
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return n + "u8";
+        case TINYGLTF_COMPONENT_TYPE_SHORT: return n + "s16";
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return n + "u16";
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return n + "u32";
+        default: return "f";
         }
     };
     bool typeFits = false, componentFits = false;
@@ -125,8 +122,7 @@ std::vector<float> readFloats(const Document& document, int accessor)
     forEachElement(document, accessor, [&](std::size_t element, const unsigned char* bytes) {
         for (std::size_t c = 0; c < layout.components; ++c) {
             const float value = loadFloat(bytes + c * layout.componentSize, layout);
-            if (!std::isfinite(value))
-                document.fail(at("accessors", std::size_t(accessor)), "element " + std::to_string(element) + " is not finite");
+            if (!std::isfinite(value)) document.fail(at("accessors", std::size_t(accessor)), "element " + std::to_string(element) + " is not finite");
             values[element * layout.components + c] = value;
         }
     });

@@ -55,7 +55,7 @@ struct Mesh {
 };
 
 struct Skin {
-    std::vector<int> joints;  ///< node indices
+    std::vector<int> joints;         ///< node indices
     std::vector<DMat4> inverseBind;  ///< one a joint
 };
 

@@ -2,11 +2,11 @@
 
 #include "core/base/file.h"
 
+#include <openssl/evp.h>
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
-#include <openssl/evp.h>
 #include <string_view>
 
 namespace lrsm::gltf {
@@ -14,10 +14,9 @@ namespace {
 
 constexpr std::size_t kMaxJsonDepth = 128;  // recursion in the JSON library and in tinygltf; real files stay below 20
 
-constexpr auto kUnderstoodExtensions = std::to_array<std::string_view>({
-    "KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
-    // Ignored, with a note where it matters: these do not change what is modelled here.
-    "KHR_materials_emissive_strength"});
+constexpr auto kUnderstoodExtensions = std::to_array<std::string_view>({"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
+                                                                        // Ignored, with a note where it matters: these do not change what is modelled here.
+                                                                        "KHR_materials_emissive_strength"});
 
 std::uint32_t littleEndian32(const unsigned char* bytes)
 {
@@ -68,8 +67,10 @@ void checkDepth(const Document& document, std::string_view text)
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (inString) {
-            if (c == '\\') ++i;
-            else if (c == '"') inString = false;
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                inString = false;
         } else if (c == '"') {
             inString = true;
         } else if (c == '[' || c == '{') {
@@ -101,13 +102,11 @@ void checkVersion(const Document& document)
         const auto digits = [](std::string_view part) {
             return !part.empty() && std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
         };
-        if (dot == std::string::npos || !digits(text.substr(0, dot)) || !digits(text.substr(dot + 1)))
-            document.fail("asset." + key, "must look like 2.0");
+        if (dot == std::string::npos || !digits(text.substr(0, dot)) || !digits(text.substr(dot + 1))) document.fail("asset." + key, "must look like 2.0");
         return text;
     };
     if (!major("version").starts_with("2.")) document.fail("asset.version", "only glTF 2 is supported");
-    if (document.json["asset"].contains("minVersion") && major("minVersion") != "2.0")
-        document.fail("asset.minVersion", "only glTF 2.0 is supported");
+    if (document.json["asset"].contains("minVersion") && major("minVersion") != "2.0") document.fail("asset.minVersion", "only glTF 2.0 is supported");
 }
 
 void checkExtensions(const Document& document)
@@ -172,8 +171,7 @@ std::vector<std::vector<unsigned char>> readBuffers(const Document& document, Co
 std::vector<unsigned char> decodeDataUri(const Document& document, std::string_view uri, const std::string& jsonPath)
 {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        document.fail(jsonPath, "a data URI must be base64");
+    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) document.fail(jsonPath, "a data URI must be base64");
     const std::string_view text = uri.substr(comma + 1);
     constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const std::size_t digits = std::min(text.find_first_not_of(kAlphabet), text.size());
@@ -192,9 +190,7 @@ std::vector<unsigned char> decodeDataUri(const Document& document, std::string_v
 
 std::string percentDecode(const std::string& uri)
 {
-    const auto hex = [](char c) {
-        return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-    };
+    const auto hex = [](char c) { return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1; };
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
         if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
@@ -248,8 +244,7 @@ Document readDocument(const std::string& path)
     checkSchema(document);
     checkVersion(document);
     checkExtensions(document);
-    for (const Json& name : document.json.value("extensionsUsed", Json::array()))
-        document.quantized |= name.get<std::string>() == "KHR_mesh_quantization";
+    for (const Json& name : document.json.value("extensionsUsed", Json::array())) document.quantized |= name.get<std::string>() == "KHR_mesh_quantization";
     document.buffers = readBuffers(document, container);
     document.model = parseModel(document);
     checkReferences(document);

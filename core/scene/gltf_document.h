@@ -2,9 +2,9 @@
 
 #include "core/base/errors.h"
 
+#include <tiny_gltf.h>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <tiny_gltf.h>
 #include <vector>
 
 /// Private to the glTF loader: a file's JSON, checked, and its buffers.
@@ -13,16 +13,13 @@ namespace lrsm::gltf {
 using Json = nlohmann::json;
 
 struct Document {
-    std::string file;        ///< as the user gave it
-    Json json;               ///< obeys the schema (checkSchema)
-    tinygltf::Model model;   ///< the same, typed; without buffers, images and extensions, which are read from `json`
+    std::string file;       ///< as the user gave it
+    Json json;              ///< obeys the schema (checkSchema)
+    tinygltf::Model model;  ///< the same, typed; without buffers, images and extensions, which are read from `json`
     std::vector<std::vector<unsigned char>> buffers;
     bool quantized = false;  ///< KHR_mesh_quantization is used
 
-    [[noreturn]] void fail(const std::string& jsonPath, const std::string& why) const
-    {
-        throw InputError(file + ": " + jsonPath, why);
-    }
+    [[noreturn]] void fail(const std::string& jsonPath, const std::string& why) const { throw InputError(file + ": " + jsonPath, why); }
 };
 
 /// "name[3]"

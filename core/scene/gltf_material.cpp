@@ -7,9 +7,9 @@ namespace {
 Wrap wrapOf(int value)
 {
     switch (value) {
-        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::clampToEdge;
-        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::mirroredRepeat;
-        default: return Wrap::repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::clampToEdge;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::mirroredRepeat;
+    default: return Wrap::repeat;
     }
 }
 

@@ -19,7 +19,9 @@ constexpr std::string_view kQuantizedUv = "VEC2 f s8 ns8 u8 nu8 s16 ns16 u16 nu1
 class AttributeReader {
   public:
     AttributeReader(const Document& document, const std::map<std::string, int>& attributes, std::string path, std::size_t vertices)
-        : document_(document), attributes_(attributes), path_(std::move(path)), vertices_(vertices) {}
+        : document_(document), attributes_(attributes), path_(std::move(path)), vertices_(vertices)
+    {
+    }
 
     std::optional<int> find(const std::string& name, std::string_view allowed) const
     {
@@ -28,8 +30,7 @@ class AttributeReader {
         const std::string path = path_ + "." + name;
         requireFormat(document_, found->second, allowed, path);
         const std::size_t count = document_.model.accessors[std::size_t(found->second)].count;
-        if (count != vertices_)
-            document_.fail(path, "has " + countOf(count, "element") + ", POSITION has " + std::to_string(vertices_));
+        if (count != vertices_) document_.fail(path, "has " + countOf(count, "element") + ", POSITION has " + std::to_string(vertices_));
         return found->second;
     }
 
@@ -70,8 +71,7 @@ class AttributeReader {
     std::size_t vertices_;
 };
 
-std::vector<std::uint32_t> readIndices(const Document& document, const tinygltf::Primitive& source, std::size_t vertices,
-                                       const std::string& path)
+std::vector<std::uint32_t> readIndices(const Document& document, const tinygltf::Primitive& source, std::size_t vertices, const std::string& path)
 {
     if (source.indices < 0) {
         std::vector<std::uint32_t> indices(vertices);
@@ -82,8 +82,8 @@ std::vector<std::uint32_t> readIndices(const Document& document, const tinygltf:
     std::vector<std::uint32_t> indices = readIntegers(document, source.indices);
     for (std::size_t i = 0; i < indices.size(); ++i)
         if (indices[i] >= vertices)
-            document.fail(path + ".indices", "element " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", but there are " +
-                                                 countOf(vertices, "vertex"));
+            document.fail(path + ".indices",
+                          "element " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", but there are " + countOf(vertices, "vertex"));
     return indices;
 }
 
@@ -94,8 +94,7 @@ std::vector<std::array<std::uint32_t, 3>> assembleTriangles(const std::vector<st
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         for (std::size_t i = 0; i + 2 < index.size(); i += 3) triangles.push_back({index[i], index[i + 1], index[i + 2]});
     } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
-        for (std::size_t i = 0; i + 2 < index.size(); ++i)
-            triangles.push_back({index[i], index[i + (1 + i % 2)], index[i + (2 - i % 2)]});
+        for (std::size_t i = 0; i + 2 < index.size(); ++i) triangles.push_back({index[i], index[i + (1 + i % 2)], index[i + (2 - i % 2)]});
     } else {
         for (std::size_t i = 0; i + 2 < index.size(); ++i) triangles.push_back({index[i + 1], index[i + 2], index[0]});
     }
@@ -154,8 +153,7 @@ void readMeshes(const Document& document, Asset& asset)
             notTriangles += !triangles;
             withoutPositions += triangles && !positions;
             if (triangles && positions)
-                mesh.primitives.push_back(
-                    readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materials.size() - 1));
+                mesh.primitives.push_back(readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materials.size() - 1));
         }
         asset.meshes.push_back(std::move(mesh));
     }

@@ -30,8 +30,8 @@ std::size_t widthOf(const Document& document, Property property, int node)
     return document.model.meshes[std::size_t(mesh)].primitives[0].targets.size();
 }
 
-Channel readChannel(const Document& document, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source,
-                    const std::string& animationPath, const std::string& path)
+Channel readChannel(const Document& document, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source, const std::string& animationPath,
+                    const std::string& path)
 {
     if (source.sampler < 0 || std::size_t(source.sampler) >= animation.samplers.size())
         document.fail(path + ".sampler", "points to nothing: there are " + countOf(animation.samplers.size(), "sampler"));

@@ -152,8 +152,8 @@ constexpr auto kTextureInfoRules = std::to_array<Rule>({
 });
 
 /// Arrays of objects at the top of the file: a wrong type there is an error even where nothing inside is read.
-constexpr auto kCollections = std::to_array<std::string_view>({"accessors", "animations", "buffers", "bufferViews", "cameras", "images",
-                                                               "materials", "meshes", "nodes", "samplers", "scenes", "skins", "textures"});
+constexpr auto kCollections = std::to_array<std::string_view>(
+    {"accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes", "nodes", "samplers", "scenes", "skins", "textures"});
 
 class Checker {
   public:
@@ -223,29 +223,29 @@ class Checker {
     void checkValue(const Json& value, const std::string& path, const Rule& rule) const
     {
         switch (rule.kind) {
-            case Kind::object:
-                if (!value.is_object()) document_.fail(path, "must be an object");
-                return;
-            case Kind::array:
-                if (!value.is_array()) document_.fail(path, "must be an array");
-                return;
-            case Kind::string:
-                if (!value.is_string()) document_.fail(path, "must be a string");
-                return;
-            case Kind::boolean:
-                if (!value.is_boolean()) document_.fail(path, "must be true or false");
-                return;
-            case Kind::integer:
-                if (!value.is_number_integer()) document_.fail(path, "must be an integer");
-                return checkNumber(value, path, rule);
-            case Kind::number: return checkNumber(value, path, rule);
-            case Kind::numbers:
-                if (!value.is_array() || (!rule.detail.empty() && std::to_string(value.size()) != rule.detail))
-                    document_.fail(path, "must be an array of " + std::string(rule.detail) + (rule.detail.empty() ? "" : " ") + "numbers");
-                for (std::size_t i = 0; i < value.size(); ++i) checkNumber(value[i], at(path, i), rule);
-                return;
-            case Kind::index: return checkIndex(value, path, rule);
-            case Kind::oneOf: return checkOneOf(value, path, rule);
+        case Kind::object:
+            if (!value.is_object()) document_.fail(path, "must be an object");
+            return;
+        case Kind::array:
+            if (!value.is_array()) document_.fail(path, "must be an array");
+            return;
+        case Kind::string:
+            if (!value.is_string()) document_.fail(path, "must be a string");
+            return;
+        case Kind::boolean:
+            if (!value.is_boolean()) document_.fail(path, "must be true or false");
+            return;
+        case Kind::integer:
+            if (!value.is_number_integer()) document_.fail(path, "must be an integer");
+            return checkNumber(value, path, rule);
+        case Kind::number: return checkNumber(value, path, rule);
+        case Kind::numbers:
+            if (!value.is_array() || (!rule.detail.empty() && std::to_string(value.size()) != rule.detail))
+                document_.fail(path, "must be an array of " + std::string(rule.detail) + (rule.detail.empty() ? "" : " ") + "numbers");
+            for (std::size_t i = 0; i < value.size(); ++i) checkNumber(value[i], at(path, i), rule);
+            return;
+        case Kind::index: return checkIndex(value, path, rule);
+        case Kind::oneOf: return checkOneOf(value, path, rule);
         }
     }
 
@@ -263,8 +263,7 @@ void checkSchema(const Document& document)
 {
     const Checker checker(document);
     if (!document.json.is_object()) document.fail("JSON", "must be an object");
-    for (const std::string_view collection : kCollections)
-        checker.check({std::string(collection) + ".*", Kind::object});
+    for (const std::string_view collection : kCollections) checker.check({std::string(collection) + ".*", Kind::object});
     for (const Rule& rule : kRules) checker.check(rule);
     for (const std::string_view info : kTextureInfos) {
         for (const Rule& inner : kTextureInfoRules) {

@@ -22,8 +22,7 @@ void checkRange(const Document& document, int view, std::uint64_t offset, std::u
                 const std::string& path)
 {
     const std::uint64_t length = document.model.bufferViews[std::size_t(view)].byteLength;
-    if (offset > length || (count - 1) * stride + size > length - offset)
-        document.fail(path, "reaches past the end of bufferView " + std::to_string(view));
+    if (offset > length || (count - 1) * stride + size > length - offset) document.fail(path, "reaches past the end of bufferView " + std::to_string(view));
 }
 
 void checkAccessor(const Document& document, std::size_t i)
@@ -46,8 +45,7 @@ void checkAccessor(const Document& document, std::size_t i)
     const auto indexSize = std::uint64_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(sparse.indices.componentType)));
     checkRange(document, sparse.indices.bufferView, std::uint64_t(sparse.indices.byteOffset), std::uint64_t(sparse.count), indexSize, indexSize,
                path + ".sparse.indices");
-    checkRange(document, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset), std::uint64_t(sparse.count), size, size,
-               path + ".sparse.values");
+    checkRange(document, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset), std::uint64_t(sparse.count), size, size, path + ".sparse.values");
 }
 
 void checkNodes(const Document& document)
@@ -93,8 +91,7 @@ void checkSkins(const Document& document)
         if (skin.inverseBindMatrices < 0) continue;
         const tinygltf::Accessor& matrices = document.model.accessors[std::size_t(skin.inverseBindMatrices)];
         const std::string path = at("skins", i) + ".inverseBindMatrices";
-        if (matrices.type != TINYGLTF_TYPE_MAT4 || matrices.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-            document.fail(path, "must be float MAT4");
+        if (matrices.type != TINYGLTF_TYPE_MAT4 || matrices.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) document.fail(path, "must be float MAT4");
         if (matrices.count < skin.joints.size()) document.fail(path, "has fewer matrices than there are joints");
     }
 }

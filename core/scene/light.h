@@ -17,8 +17,8 @@ inline constexpr float kMaxIrradiance = 1e20f;
 
 /// Spot: I / r^2 * falloff(cos); falloff = clamp((cos - cosOuter) / (cosInner - cosOuter), 0, 1)^2, and the range
 /// window of KHR_lights_punctual. The extension's sample code puts 0.001 under the quotient, which would take the light of a narrow spot away
-/// (all but 0.1 % of one of 1 degree); here the ramp is at least a thousandth of the cone's own 1 - cosOuter wide. Cube face: I / r^2 inside its 90-degree square frustum (a direction on the border of two
-/// faces belongs to exactly one). Directional: the intensity.
+/// (all but 0.1 % of one of 1 degree); here the ramp is at least a thousandth of the cone's own 1 - cosOuter wide. Cube face: I / r^2 inside its 90-degree
+/// square frustum (a direction on the border of two faces belongs to exactly one). Directional: the intensity.
 LightSample sampleLight(const Light& light, const Vec3& pWorld);
 
 /// The same, bit for bit, with what depends on the light alone worked out once: for loops over many points.
@@ -31,7 +31,7 @@ class LightSampler {
     Light light_;
     float cosInner_ = 1.0f, cosOuter_ = 0.0f;
     float versineInner_ = 0.0f, versineOuter_ = 1.0f;  ///< 1 - cos, exact for small angles
-    bool steep_ = false;  ///< the ramp is too narrow for a difference of cosines in float
+    bool steep_ = false;                               ///< the ramp is too narrow for a difference of cosines in float
     int face_ = 0;
 };
 

@@ -64,9 +64,8 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     }
     if (view.lights) result.lights = std::move(*view.lights);
     // What was said about defaults no longer holds where the view replaced them.
-    std::erase_if(result.notes, [&](const std::string& note) {
-        return (view.camera && note == kDefaultCameraNote) || (view.lights && note == kDefaultLightNote);
-    });
+    std::erase_if(result.notes,
+                  [&](const std::string& note) { return (view.camera && note == kDefaultCameraNote) || (view.lights && note == kDefaultLightNote); });
     result.notes.insert(result.notes.end(), view.notes.begin(), view.notes.end());
     return result;
 }

@@ -159,8 +159,8 @@ struct SkinMatrices {
     std::vector<DMat4> worldFromBind;
 };
 
-lrsm::Mesh worldMesh(const Primitive& primitive, const Mesh& source, const Node& node, const DMat4& world,
-                     const std::vector<float>& weights, const SkinMatrices& skinning)
+lrsm::Mesh worldMesh(const Primitive& primitive, const Mesh& source, const Node& node, const DMat4& world, const std::vector<float>& weights,
+                     const SkinMatrices& skinning)
 {
     lrsm::Mesh mesh;
     mesh.name = source.name;
@@ -172,8 +172,10 @@ lrsm::Mesh worldMesh(const Primitive& primitive, const Mesh& source, const Node&
 
     Vertices vertices = morphed(primitive, weights);
     const bool skinned = skinning.skin && !primitive.influences.empty();
-    if (skinned) skinAll(vertices, primitive, skinning.worldFromBind, world);
-    else transformAll(vertices, world);
+    if (skinned)
+        skinAll(vertices, primitive, skinning.worldFromBind, world);
+    else
+        transformAll(vertices, world);
     const bool mirrored = !skinned && isMirrored(world);
     if (mirrored)
         for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
@@ -210,8 +212,7 @@ void addLight(const LocalLight& local, const Node& node, const DMat4& world, Sce
     if (local.point) {
         const Vec3 position{DVec3(world[3])};
         if (!isFinite(position)) throw InputError("node \"" + node.name + "\"", "its light's position is not finite");
-        for (Light& face : splitPointLight(position, local.light.intensity, local.light.range, local.light.name))
-            scene.lights.push_back(std::move(face));
+        for (Light& face : splitPointLight(position, local.light.intensity, local.light.range, local.light.name)) scene.lights.push_back(std::move(face));
         scene.notes.push_back("point light \"" + local.light.name + "\" split into six faces of a cube");
         return;
     }
@@ -254,8 +255,7 @@ Scene poseAsset(const Asset& asset, const Pose& pose)
             }
             const Mesh& mesh = asset.meshes[std::size_t(node.mesh)];
             for (const Primitive& primitive : mesh.primitives)
-                if (!primitive.triangles.empty())
-                    scene.meshes.push_back(worldMesh(primitive, mesh, node, world, pose.weights[std::size_t(n)], skinning));
+                if (!primitive.triangles.empty()) scene.meshes.push_back(worldMesh(primitive, mesh, node, world, pose.weights[std::size_t(n)], skinning));
         }
         if (node.light >= 0) addLight(asset.lights[std::size_t(node.light)], node, world, scene);
         if (node.camera >= 0) addCamera(asset.cameras[std::size_t(node.camera)], node, world, scene);

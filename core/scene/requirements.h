@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@ namespace lrsm {
 
 /// What this scene needs: the mask that every pass obeys. Leaving out what is not needed changes no bit of the picture.
 struct Requirements {
-    bool specular = true;    ///< some material has a specular part: specular cones and channels
-    bool alphaTest = true;   ///< some material has an alpha mask
+    bool specular = true;   ///< some material has a specular part: specular cones and channels
+    bool alphaTest = true;  ///< some material has an alpha mask
     bool normalMaps = true;
     bool textures = true;
     bool vertexColors = true;

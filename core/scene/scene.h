@@ -56,10 +56,10 @@ struct Mesh {
     std::string name;
     int material = 0;  ///< index into Scene::materials
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;  ///< unit; always present (flat ones are computed where the file has none)
+    std::vector<Vec3> normals;   ///< unit; always present (flat ones are computed where the file has none)
     std::vector<Vec4> tangents;  ///< xyz unit, w = +-1: bitangent = w * cross(normal, tangent). Empty: derived from uv where needed.
     std::vector<Vec2> uv0, uv1;
-    std::vector<Vec4> colors;  ///< linear, multiplied into baseColor
+    std::vector<Vec4> colors;                             ///< linear, multiplied into baseColor
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
 };
 
@@ -72,13 +72,13 @@ enum class LightType {
 struct Light {
     std::string name;
     LightType type = LightType::directional;
-    Vec3 position{0.0f};              ///< spot, cubeFace
-    Vec3 direction{0.0f, -1.0f, 0.0f};  ///< unit, the way the light travels along its axis
-    Vec3 up{0.0f, 0.0f, 1.0f};        ///< unit, orthogonal to direction: fixes the RSM's (and the cube face's) orientation
-    Vec3 intensity{1.0f};             ///< colour times intensity
-    float innerConeAngle = 0.0f;      ///< radians from the axis
+    Vec3 position{0.0f};                 ///< spot, cubeFace
+    Vec3 direction{0.0f, -1.0f, 0.0f};   ///< unit, the way the light travels along its axis
+    Vec3 up{0.0f, 0.0f, 1.0f};           ///< unit, orthogonal to direction: fixes the RSM's (and the cube face's) orientation
+    Vec3 intensity{1.0f};                ///< colour times intensity
+    float innerConeAngle = 0.0f;         ///< radians from the axis
     float outerConeAngle = 0.78539816f;  ///< radians from the axis, < pi/2
-    float range = kInfinity;          ///< metres; beyond it no light (KHR_lights_punctual's window); +inf: none
+    float range = kInfinity;             ///< metres; beyond it no light (KHR_lights_punctual's window); +inf: none
 };
 
 struct Camera {
@@ -87,10 +87,10 @@ struct Camera {
     Vec3 forward{0.0f, 0.0f, -1.0f};  ///< unit
     Vec3 up{0.0f, 1.0f, 0.0f};        ///< unit, orthogonal to forward
     bool perspective = true;
-    float verticalFov = 0.8f;       ///< radians, perspective
-    float verticalExtent = 1.0f;    ///< metres from bottom to top of the picture, orthographic
-    float aspect = 0.0f;            ///< width / height the file asks for; 0: as the picture
-    float nearPlane = 0.01f;        ///< metres
+    float verticalFov = 0.8f;     ///< radians, perspective
+    float verticalExtent = 1.0f;  ///< metres from bottom to top of the picture, orthographic
+    float aspect = 0.0f;          ///< width / height the file asks for; 0: as the picture
+    float nearPlane = 0.01f;      ///< metres
 };
 
 struct Scene {
@@ -100,7 +100,7 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Light> lights;
     std::vector<Camera> cameras;
-    Aabb bounds;  ///< of all vertices that a triangle uses
+    Aabb bounds;                     ///< of all vertices that a triangle uses
     std::vector<std::string> notes;  ///< what was skipped, replaced or assumed, one sentence each: shown by `info` and frame.json
 
     std::size_t triangleCount() const

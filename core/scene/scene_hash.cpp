@@ -9,8 +9,7 @@ namespace {
 class Feeder {
   public:
     template <class T>
-        requires std::is_arithmetic_v<T>
-    Feeder& operator<<(T value)
+    requires std::is_arithmetic_v<T> Feeder& operator<<(T value)
     {
         sha_.add(std::as_bytes(std::span(&value, 1)));
         return *this;

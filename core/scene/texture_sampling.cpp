@@ -29,12 +29,12 @@ float wrapCoordinate(float u, Wrap wrap)
 {
     if (!std::isfinite(u)) return 0.0f;
     switch (wrap) {
-        case Wrap::clampToEdge: return std::clamp(u, 0.0f, 1.0f);
-        case Wrap::mirroredRepeat: {
-            const float period = u - 2.0f * std::floor(0.5f * u);  // in [0, 2]
-            return period <= 1.0f ? period : 2.0f - period;
-        }
-        default: return u - std::floor(u);  // in [0, 1]: a tiny negative u rounds to 1
+    case Wrap::clampToEdge: return std::clamp(u, 0.0f, 1.0f);
+    case Wrap::mirroredRepeat: {
+        const float period = u - 2.0f * std::floor(0.5f * u);  // in [0, 2]
+        return period <= 1.0f ? period : 2.0f - period;
+    }
+    default: return u - std::floor(u);  // in [0, 1]: a tiny negative u rounds to 1
     }
 }
 

@@ -129,8 +129,7 @@ void addLight(const Reader& reader, View& view)
         light.type = LightType::directional;
         light.direction = reader.direction("direction", reader.vector("direction"));
     } else if (type == "spot") {
-        reader.allowOnly({"type", "name", "position", "target", "direction", "color", "intensity", "range", "innerConeAngleDegrees",
-                          "outerConeAngleDegrees"});
+        reader.allowOnly({"type", "name", "position", "target", "direction", "color", "intensity", "range", "innerConeAngleDegrees", "outerConeAngleDegrees"});
         light.type = LightType::spot;
         light.position = reader.vector("position");
         if (reader.has("target") == reader.has("direction")) reader.fail("target", "give either target or direction");
@@ -180,8 +179,7 @@ View parseView(const std::string& text, const std::string& file)
     if (root.has("lights")) {
         if (!json["lights"].is_array() || json["lights"].empty()) root.fail("lights", "must be an array of at least one light");
         view.lights.emplace();
-        for (std::size_t i = 0; i < json["lights"].size(); ++i)
-            addLight(Reader(json["lights"][i], file, "lights[" + std::to_string(i) + "]"), view);
+        for (std::size_t i = 0; i < json["lights"].size(); ++i) addLight(Reader(json["lights"][i], file, "lights[" + std::to_string(i) + "]"), view);
     }
     return view;
 }

@@ -10,7 +10,7 @@
 /// The defaults below are the preset `balanced`.
 namespace lrsm {
 
-enum class Storage { gpu, float32 };  ///< Table 1's formats after every pass, or float32 throughout
+enum class Storage { gpu, float32 };          ///< Table 1's formats after every pass, or float32 throughout
 enum class FilterFraction { exact, fixed8 };  ///< sampler fractions in float, or rounded to 1/256 (what D3D11 guarantees); key "8bit"
 
 enum class Voxelization { conservative, thin, raster };
@@ -39,12 +39,12 @@ enum class LayerSelection {
 };
 
 struct LayerSettings {
-    int depthLayers = 2;    ///< a + 1, 1..16
-    int normalLayers = 2;   ///< b + 1, 1..8, equal slices of <n.l>
-    float overlap = 0.0f;   ///< delta of Eq. 15 as a fraction of a depth slice, [0, 0.5]
-    bool fitRanges = true;  ///< depth ranges fitted to the RSM's valid texels; false: equal slices of the light's whole range
+    int depthLayers = 2;          ///< a + 1, 1..16
+    int normalLayers = 2;         ///< b + 1, 1..8, equal slices of <n.l>
+    float overlap = 0.0f;         ///< delta of Eq. 15 as a fraction of a depth slice, [0, 0.5]
+    bool fitRanges = true;        ///< depth ranges fitted to the RSM's valid texels; false: equal slices of the light's whole range
     bool outermostDecay = false;  ///< true: Eq. 15 literally, also at the nearest and farthest end; false: the outer ranges reach delta further
-    bool dropEmpty = true;  ///< layers without a lit texel are neither stored nor sampled (no bit of the picture changes)
+    bool dropEmpty = true;        ///< layers without a lit texel are neither stored nor sampled (no bit of the picture changes)
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
     bool operator==(const LayerSettings&) const = default;
@@ -54,7 +54,7 @@ enum class Shadows { hard, cone, off };  ///< RSM depth comparison; shadow cone 
 
 struct DirectSettings {
     Shadows shadows = Shadows::hard;
-    float depthBiasTexels = 0.75f;        ///< hard: slope-scaled bias in RSM texels, >= 0; half a texel's diagonal just covers a plane
+    float depthBiasTexels = 0.75f;           ///< hard: slope-scaled bias in RSM texels, >= 0; half a texel's diagonal just covers a plane
     float shadowConeApertureDegrees = 2.0f;  ///< cone: full aperture, (0, 90]
     bool operator==(const DirectSettings&) const = default;
 };
@@ -69,11 +69,11 @@ enum class TransmittanceModel { exponential, linear };
 
 struct ConeSettings {
     Estimator estimator = Estimator::slab;
-    int count = 6;                      ///< diffuse cones, 1..256
-    float apertureScale = 0.5f;         ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
+    int count = 6;               ///< diffuse cones, 1..256
+    float apertureScale = 0.5f;  ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
-    bool filter = true;                 ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
-    int setsPerPixel = 1;               ///< cone sets of the 16 rotations averaged in each pixel, 1..16
+    bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
+    int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
 
     // March.
     float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
@@ -86,22 +86,22 @@ struct ConeSettings {
 
     // Opacity.
     OpacityModel opacity = OpacityModel::density;
-    float densityK = 2.0f;              ///< `paper`: optical depth of a one-voxel wall, > 0
+    float densityK = 2.0f;                                          ///< `paper`: optical depth of a one-voxel wall, > 0
     TransmittanceModel transmittance = TransmittanceModel::linear;  ///< `slab`
-    bool subtractOwnPlane = false;      ///< `slab`: receiver's own plane taken out of the opacity
-    float voxelLevelBias = -2.0f;       ///< added to log2(diameter in voxels)
-    float emitterDelayTaps = 2.0f;      ///< `slab`: transmittance is taken this many tap widths before the emitter ...
-    float emitterDelayVoxels = 0.75f;   ///< ... plus this many base voxels,
-    float emitterSlantCap = 0.5f;       ///< over max(cosine at the emitter, this)
+    bool subtractOwnPlane = false;                                  ///< `slab`: receiver's own plane taken out of the opacity
+    float voxelLevelBias = -2.0f;                                   ///< added to log2(diameter in voxels)
+    float emitterDelayTaps = 2.0f;                                  ///< `slab`: transmittance is taken this many tap widths before the emitter ...
+    float emitterDelayVoxels = 0.75f;                               ///< ... plus this many base voxels,
+    float emitterSlantCap = 0.5f;                                   ///< over max(cosine at the emitter, this)
 
     // LRSM.
     LayerSelection layerSelection = LayerSelection::touched;
     Backface backface = Backface::step;  ///< `paper`: N of Eq. 8 as it is, or 1 where N > 0
-    float vRadiusScale = 1.0f;          ///< `paper`: depth window of Eq. 12 is z_c +- this r_c, > 0
-    float rsmLevelBias = 0.0f;          ///< added to log2(diameter in LRSM texels)
-    float rsmMinLevel = 0.0f;           ///< clamp (Fig. 8's trade), >= 0
+    float vRadiusScale = 1.0f;           ///< `paper`: depth window of Eq. 12 is z_c +- this r_c, > 0
+    float rsmLevelBias = 0.0f;           ///< added to log2(diameter in LRSM texels)
+    float rsmMinLevel = 0.0f;            ///< clamp (Fig. 8's trade), >= 0
     GaussianMethod gaussian = GaussianMethod::polynomial;
-    int gaussianTableSize = 1024;       ///< entries, 2..65536
+    int gaussianTableSize = 1024;  ///< entries, 2..65536
     FilterFraction filterFraction = FilterFraction::exact;
 
     // Specular.

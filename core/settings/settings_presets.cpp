@@ -133,8 +133,8 @@ std::string settingsMarkdown()
             stage = info.stage;
             out << "\n## " << stage << "\n\n| key | balanced | allowed | unit | meaning | source |\n| --- | --- | --- | --- | --- | --- |\n";
         }
-        out << "| `" << info.key << "` | " << info.defaultValue << " | " << cell(info.allowed) << " | " << info.unit << " | "
-            << cell(info.meaning) << " | " << cell(info.source) << " |\n";
+        out << "| `" << info.key << "` | " << info.defaultValue << " | " << cell(info.allowed) << " | " << info.unit << " | " << cell(info.meaning) << " | "
+            << cell(info.source) << " |\n";
     }
     out << "\n## Presets\n\nWhat each changes against `balanced`.\n";
     for (const Preset& preset : presets()) {

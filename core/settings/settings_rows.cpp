@@ -25,8 +25,7 @@ struct Text {
 template <auto Stage, auto Field>
 SettingRow row(std::string_view stage, const Text& text, SettingKind kind, SettingRange range, std::vector<std::string_view> choices = {})
 {
-    return {text.key,  stage, text.unit,           text.meaning, text.source,
-            kind,      range, std::move(choices), &Access<Stage, Field>::get, &Access<Stage, Field>::set};
+    return {text.key, stage, text.unit, text.meaning, text.source, kind, range, std::move(choices), &Access<Stage, Field>::get, &Access<Stage, Field>::set};
 }
 
 template <auto Field>
@@ -79,9 +78,18 @@ SettingRow shorthand(SettingRow row, void (*set)(Settings&, double))
     return row;
 }
 
-constexpr SettingRange powersOfTwo(float min, float max) { return {min, max, false, false, true}; }
-constexpr SettingRange above(float min, float max) { return {min, max, true, false, false}; }
-constexpr SettingRange below(float min, float max) { return {min, max, false, true, false}; }
+constexpr SettingRange powersOfTwo(float min, float max)
+{
+    return {min, max, false, false, true};
+}
+constexpr SettingRange above(float min, float max)
+{
+    return {min, max, true, false, false};
+}
+constexpr SettingRange below(float min, float max)
+{
+    return {min, max, false, true, false};
+}
 
 using V = VoxelSettings;
 using R = RsmSettings;
@@ -95,136 +103,107 @@ void addBuildingRows(std::vector<SettingRow>& rows)
 {
     const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"};
 
-    rows.push_back(whole<&V::resolution>({"voxel_resolution", "voxels", "voxels along an edge of the grid", "paper Table 2: 256, 512"},
-                                         powersOfTwo(1, 2048)));
-    rows.push_back(choice<&V::mode>({"voxelization", "", "exact box overlap; 6-separating; or sampled along the dominant axis (has holes)", "paper Sec. 3.2: raster"},
-                                    {"conservative", "thin", "raster"}));
+    rows.push_back(whole<&V::resolution>({"voxel_resolution", "voxels", "voxels along an edge of the grid", "paper Table 2: 256, 512"}, powersOfTwo(1, 2048)));
+    rows.push_back(
+        choice<&V::mode>({"voxelization", "", "exact box overlap; 6-separating; or sampled along the dominant axis (has holes)", "paper Sec. 3.2: raster"},
+                         {"conservative", "thin", "raster"}));
     rows.push_back(choice<&V::mipFilter>({"mip_filter", "", "a mip voxel is the mean of its 8 children, their sum / 4, or their maximum", "paper: mean"},
                                          {"mean", "coverage", "max"}));
-    rows.push_back(choice<&V::axes>({"opacity_axes", "", "one opacity a voxel, or an area density along each axis", "paper: isotropic"},
-                                    {"isotropic", "directional"}));
+    rows.push_back(
+        choice<&V::axes>({"opacity_axes", "", "one opacity a voxel, or an area density along each axis", "paper: isotropic"}, {"isotropic", "directional"}));
     rows.push_back(choice<&V::storage>({"voxel_storage", "", "mips in UNORM8 or in float32", "paper Table 1: gpu"}, storage));
 
-    rows.push_back(whole<&R::resolution>({"rsm_resolution", "texels", "texels along an edge of the reflective shadow map",
-                                          "paper Table 2: 1024"},
-                                         powersOfTwo(2, 8192)));
+    rows.push_back(
+        whole<&R::resolution>({"rsm_resolution", "texels", "texels along an edge of the reflective shadow map", "paper Table 2: 1024"}, powersOfTwo(2, 8192)));
     rows.push_back(choice<&R::storage>({"rsm_storage", "", "RSM attributes in half or in float32", "paper Table 1: gpu"}, storage));
-    rows.push_back(choice<&R::halfRounding>({"rsm_half_rounding", "", "float to half: toward zero (D3D11) or to nearest even",
-                                             "D3D11.3 spec 3.2.2: d3d"},
-                                            rounding));
+    rows.push_back(
+        choice<&R::halfRounding>({"rsm_half_rounding", "", "float to half: toward zero (D3D11) or to nearest even", "D3D11.3 spec 3.2.2: d3d"}, rounding));
 
     rows.push_back(whole<&L::depthLayers>({"depth_layers", "", "depth slices, a + 1", "paper Table 2: 2, 3"}, {1, 16}));
     rows.push_back(whole<&L::normalLayers>({"normal_layers", "", "slices of <n.l>, b + 1", "paper Table 2: 2"}, {1, 8}));
-    rows.push_back(real<&L::overlap>({"layer_overlap", "depth slices", "delta of Eq. 15; 0 with layer_selection=touched",
-                                      "paper Sec. 4.3, no value given"},
-                                     {0, 0.5f}));
-    rows.push_back(flag<&L::fitRanges>({"fit_ranges", "", "fit the depth slices to the RSM's valid texels; false: slices of the light's whole range", "ours; paper: static"}));
-    rows.push_back(flag<&L::outermostDecay>({"outermost_decay", "", "Eq. 15 also falls off at the nearest and farthest end; false: the outer ranges reach delta further", "paper Eq. 15: true"}));
-    rows.push_back(flag<&L::dropEmpty>({"drop_empty", "", "layers without a lit texel are neither stored nor sampled (changes no bit of the picture)", "ours"}));
+    rows.push_back(
+        real<&L::overlap>({"layer_overlap", "depth slices", "delta of Eq. 15; 0 with layer_selection=touched", "paper Sec. 4.3, no value given"}, {0, 0.5f}));
+    rows.push_back(flag<&L::fitRanges>(
+        {"fit_ranges", "", "fit the depth slices to the RSM's valid texels; false: slices of the light's whole range", "ours; paper: static"}));
+    rows.push_back(flag<&L::outermostDecay>(
+        {"outermost_decay", "", "Eq. 15 also falls off at the nearest and farthest end; false: the outer ranges reach delta further", "paper Eq. 15: true"}));
+    rows.push_back(
+        flag<&L::dropEmpty>({"drop_empty", "", "layers without a lit texel are neither stored nor sampled (changes no bit of the picture)", "ours"}));
     rows.push_back(choice<&L::storage>({"layer_storage", "", "LRSM in half and UNORM16, or in float32", "paper Table 1: gpu"}, storage));
     rows.push_back(choice<&L::halfRounding>({"layer_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, rounding));
 
-    rows.push_back(choice<&D::shadows>({"shadows", "", "RSM depth comparison; shadow cones through the voxels; or none",
-                                        "paper Table 3: cone"},
-                                       {"hard", "cone", "off"}));
+    rows.push_back(
+        choice<&D::shadows>({"shadows", "", "RSM depth comparison; shadow cones through the voxels; or none", "paper Table 3: cone"}, {"hard", "cone", "off"}));
     rows.push_back(real<&D::depthBiasTexels>({"depth_bias_texels", "RSM texels", "slope-scaled bias of hard shadows", "ours"}, {0, 1000}));
-    rows.push_back(real<&D::shadowConeApertureDegrees>({"shadow_cone_aperture_degrees", "degrees", "full aperture of a shadow cone",
-                                                        "ours"},
-                                                       above(0, 90)));
+    rows.push_back(real<&D::shadowConeApertureDegrees>({"shadow_cone_aperture_degrees", "degrees", "full aperture of a shadow cone", "ours"}, above(0, 90)));
 }
 
 void addConeRows(std::vector<SettingRow>& rows)
 {
-    rows.push_back(choice<&C::estimator>({"estimator", "", "Algorithm 1 and Eq. 1 as printed; or V and N as one term with linear transmittance",
-                                          "paper: paper"},
-                                         {"paper", "slab"}));
+    rows.push_back(choice<&C::estimator>(
+        {"estimator", "", "Algorithm 1 and Eq. 1 as printed; or V and N as one term with linear transmittance", "paper: paper"}, {"paper", "slab"}));
     rows.push_back(whole<&C::count>({"cone_count", "", "diffuse cones a pixel", "paper Sec. 6: 6"}, {1, 256}));
-    rows.push_back(real<&C::apertureScale>({"aperture_scale", "", "traced aperture over the cone's own (60 degrees for six)", "paper: 1"},
-                                           above(0, 2)));
-    rows.push_back(choice<&C::rotation>({"rotation", "", "per pixel over 4x4: none; azimuth of the cone set; azimuth and polar angle in strata", "ours; paper: none"},
-                                        {"none", "azimuth", "strata"}));
+    rows.push_back(real<&C::apertureScale>({"aperture_scale", "", "traced aperture over the cone's own (60 degrees for six)", "paper: 1"}, above(0, 2)));
+    rows.push_back(
+        choice<&C::rotation>({"rotation", "", "per pixel over 4x4: none; azimuth of the cone set; azimuth and polar angle in strata", "ours; paper: none"},
+                             {"none", "azimuth", "strata"}));
     rows.push_back(flag<&C::filter>({"irradiance_filter", "", "geometry-aware 4x4 filter of the irradiance, for rotation != none", "ours; paper: false"}));
-    rows.push_back(whole<&C::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"},
-                                           {1, 16}));
+    rows.push_back(whole<&C::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
     rows.push_back(real<&C::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));
-    rows.push_back(real<&C::startVoxels>({"start_voxels", "base voxels", "distance of the first sample along the cone", "ours"},
-                                         {0, 1024}));
-    rows.push_back(real<&C::normalOffsetVoxels>({"normal_offset_voxels", "base voxels", "origin off the surface, along the geometric normal",
-                                                 "ours"},
-                                                {0, 1024}));
+    rows.push_back(real<&C::startVoxels>({"start_voxels", "base voxels", "distance of the first sample along the cone", "ours"}, {0, 1024}));
+    rows.push_back(
+        real<&C::normalOffsetVoxels>({"normal_offset_voxels", "base voxels", "origin off the surface, along the geometric normal", "ours"}, {0, 1024}));
     rows.push_back(real<&C::minDiameterVoxels>({"min_diameter_voxels", "base voxels", "smallest sphere diameter", "ours"}, above(0, 1024)));
     rows.push_back(real<&C::push>({"push", "sphere radii", "sphere centre moved along the receiver's normal", "ours; paper: 0"}, {0, 16}));
-    rows.push_back(real<&C::transmittanceCutoff>({"transmittance_cutoff", "", "a cone ends below this transmittance", "ours"},
-                                                 below(0, 1)));
+    rows.push_back(real<&C::transmittanceCutoff>({"transmittance_cutoff", "", "a cone ends below this transmittance", "ours"}, below(0, 1)));
     rows.push_back(whole<&C::maxSteps>({"max_steps", "", "steps a cone", "ours"}, {1, 100000}));
 
-    rows.push_back(choice<&C::opacity>({"opacity", "", "mip value as opacity, or as density along the step", "paper: none"},
-                                       {"none", "density"}));
-    rows.push_back(real<&C::densityK>({"density_k", "", "estimator paper: optical depth of a wall one voxel thick", "ours"},
-                                      above(0, 1000)));
-    rows.push_back(choice<&C::transmittance>({"transmittance", "", "estimator slab: coverage multiplies (exponential) or adds (linear)",
-                                              "ours"},
+    rows.push_back(choice<&C::opacity>({"opacity", "", "mip value as opacity, or as density along the step", "paper: none"}, {"none", "density"}));
+    rows.push_back(real<&C::densityK>({"density_k", "", "estimator paper: optical depth of a wall one voxel thick", "ours"}, above(0, 1000)));
+    rows.push_back(choice<&C::transmittance>({"transmittance", "", "estimator slab: coverage multiplies (exponential) or adds (linear)", "ours"},
                                              {"exponential", "linear"}));
     rows.push_back(flag<&C::subtractOwnPlane>({"subtract_own_plane", "", "estimator slab: the receiver's own plane is taken out of the opacity", "ours"}));
-    rows.push_back(real<&C::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"},
-                                            {-16, 16}));
-    rows.push_back(real<&C::emitterDelayTaps>({"emitter_delay_taps", "tap widths", "estimator slab: transmittance is taken this far before the emitter",
-                                               "ours"},
-                                              {0, 16}));
+    rows.push_back(real<&C::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"}, {-16, 16}));
+    rows.push_back(real<&C::emitterDelayTaps>(
+        {"emitter_delay_taps", "tap widths", "estimator slab: transmittance is taken this far before the emitter", "ours"}, {0, 16}));
     rows.push_back(real<&C::emitterDelayVoxels>({"emitter_delay_voxels", "base voxels", "... plus this", "ours"}, {0, 16}));
     rows.push_back(real<&C::emitterSlantCap>({"emitter_slant_cap", "", "... over max(cosine at the emitter, this)", "ours"}, above(0, 1)));
 }
 
 void addLookupRows(std::vector<SettingRow>& rows)
 {
-    rows.push_back(choice<&C::layerSelection>({"layer_selection", "", "layers that hold z_c, weighted by Eq. 15; or every layer touched, weight 1",
-                                               "paper Sec. 4.3: centre"},
-                                              {"centre", "touched"}));
-    rows.push_back(choice<&C::backface>({"backface", "", "estimator paper: N of Eq. 8, or 1 where N > 0",
-                                         "paper Eq. 8: cosine"},
-                                        {"cosine", "step"}));
-    rows.push_back(real<&C::vRadiusScale>({"v_radius_scale", "sphere radii", "estimator paper: depth window of Eq. 12 about z_c",
-                                           "paper Eq. 12: 1"},
-                                          above(0, 16)));
-    rows.push_back(real<&C::rsmLevelBias>({"rsm_level_bias", "mip levels", "added to log2(diameter in LRSM texels)", "paper: 0"},
-                                          {-16, 16}));
-    rows.push_back(real<&C::rsmMinLevel>({"rsm_min_level", "mip levels", "finest LRSM level sampled: stability against sharpness",
-                                          "paper Fig. 8"},
-                                         {0, 16}));
-    rows.push_back(choice<&C::gaussian>({"gaussian", "", "normal distribution: table of gaussian_table_size, polynomial, or exact in double",
-                                         "paper Sec. 5: table"},
-                                        {"table", "polynomial", "exact"}));
-    rows.push_back(whole<&C::gaussianTableSize>({"gaussian_table_size", "entries", "over [-5, 5], linear between",
-                                                 "paper Sec. 5, no size given"},
-                                                {2, 65536}));
-    rows.push_back(choice<&C::filterFraction>({"filter_fraction", "", "sampler fractions in float, or rounded to 1/256 (all that D3D11 guarantees)",
-                                               "D3D11.3 spec 7.18.16"},
-                                              {"exact", "8bit"}));
+    rows.push_back(choice<&C::layerSelection>(
+        {"layer_selection", "", "layers that hold z_c, weighted by Eq. 15; or every layer touched, weight 1", "paper Sec. 4.3: centre"},
+        {"centre", "touched"}));
+    rows.push_back(choice<&C::backface>({"backface", "", "estimator paper: N of Eq. 8, or 1 where N > 0", "paper Eq. 8: cosine"}, {"cosine", "step"}));
+    rows.push_back(
+        real<&C::vRadiusScale>({"v_radius_scale", "sphere radii", "estimator paper: depth window of Eq. 12 about z_c", "paper Eq. 12: 1"}, above(0, 16)));
+    rows.push_back(real<&C::rsmLevelBias>({"rsm_level_bias", "mip levels", "added to log2(diameter in LRSM texels)", "paper: 0"}, {-16, 16}));
+    rows.push_back(real<&C::rsmMinLevel>({"rsm_min_level", "mip levels", "finest LRSM level sampled: stability against sharpness", "paper Fig. 8"}, {0, 16}));
+    rows.push_back(
+        choice<&C::gaussian>({"gaussian", "", "normal distribution: table of gaussian_table_size, polynomial, or exact in double", "paper Sec. 5: table"},
+                             {"table", "polynomial", "exact"}));
+    rows.push_back(whole<&C::gaussianTableSize>({"gaussian_table_size", "entries", "over [-5, 5], linear between", "paper Sec. 5, no size given"}, {2, 65536}));
+    rows.push_back(choice<&C::filterFraction>(
+        {"filter_fraction", "", "sampler fractions in float, or rounded to 1/256 (all that D3D11 guarantees)", "D3D11.3 spec 7.18.16"}, {"exact", "8bit"}));
 
-    rows.push_back(choice<&C::specularAperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"},
-                                                {"fixed", "roughness"}));
-    rows.push_back(real<&C::specularApertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed",
-                                                      "paper Fig. 7: 10"},
-                                                     above(0, 170)));
+    rows.push_back(choice<&C::specularAperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
+    rows.push_back(real<&C::specularApertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
 
-    rows.push_back(flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));
+    rows.push_back(
+        flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));
 }
 
 void addShorthands(std::vector<SettingRow>& rows)
 {
-    rows.push_back(shorthand(choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage and layer_storage at once",
-                                                  "paper Table 1: gpu"},
-                                                 {"gpu", "float32"}),
-                             [](Settings& settings, double value) {
-                                 settings.voxel.storage = settings.rsm.storage = settings.layers.storage = static_cast<Storage>(value);
-                             }));
-    rows.push_back(shorthand(choice<&L::halfRounding>({"half_rounding", "", "rsm_half_rounding and layer_half_rounding at once",
-                                                       "D3D11.3 spec 3.2.2: d3d"},
-                                                      {"d3d", "nearest_even"}),
-                             [](Settings& settings, double value) {
-                                 settings.rsm.halfRounding = settings.layers.halfRounding = static_cast<HalfRounding>(value);
-                             }));
+    rows.push_back(shorthand(
+        choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage and layer_storage at once", "paper Table 1: gpu"}, {"gpu", "float32"}),
+        [](Settings& settings, double value) { settings.voxel.storage = settings.rsm.storage = settings.layers.storage = static_cast<Storage>(value); }));
+    rows.push_back(
+        shorthand(choice<&L::halfRounding>({"half_rounding", "", "rsm_half_rounding and layer_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
+                                           {"d3d", "nearest_even"}),
+                  [](Settings& settings, double value) { settings.rsm.halfRounding = settings.layers.halfRounding = static_cast<HalfRounding>(value); }));
 }
 
 }  // namespace

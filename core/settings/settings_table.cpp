@@ -64,8 +64,7 @@ std::string allowedText(const SettingRow& row)
         return std::to_string(int(row.range.min)) + " .. " + std::to_string(int(row.range.max)) + (row.range.powerOfTwo ? ", power of two" : "");
     case SettingKind::real: break;
     }
-    return (row.range.openMin ? "(" : "[") + floatText(row.range.min) + ", " + floatText(row.range.max) +
-           (row.range.openMax ? ")" : "]");
+    return (row.range.openMin ? "(" : "[") + floatText(row.range.min) + ", " + floatText(row.range.max) + (row.range.openMax ? ")" : "]");
 }
 
 std::string valueText(const SettingRow& row, const Settings& settings)
@@ -130,16 +129,14 @@ const SettingRow& findRow(const std::string& key, const std::string& place)
         const std::size_t distance = part ? 1 : editDistance(key, std::string(row.key));
         if (distance < nearestDistance) nearest = &row, nearestDistance = distance;
     }
-    throw InputError(place, "there is no setting \"" + key + "\"" +
-                                (nearest ? "; did you mean " + std::string(nearest->key) + "?" : "") +
-                                " (`lrsm settings` lists them)");
+    throw InputError(
+        place, "there is no setting \"" + key + "\"" + (nearest ? "; did you mean " + std::string(nearest->key) + "?" : "") + " (`lrsm settings` lists them)");
 }
 
 void applySetting(Settings& settings, const std::string& assignment)
 {
     const std::size_t equals = assignment.find('=');
-    if (equals == std::string::npos || equals == 0)
-        throw InputError("setting \"" + assignment + "\"", "must be written key=value");
+    if (equals == std::string::npos || equals == 0) throw InputError("setting \"" + assignment + "\"", "must be written key=value");
     const std::string key = assignment.substr(0, equals);
     setFromText(findRow(key, "setting " + assignment), settings, assignment.substr(equals + 1));
 }
@@ -155,11 +152,26 @@ void checkRanges(const Settings& settings, std::string_view stage)
 
 }  // namespace
 
-void validate(const VoxelSettings& settings) { checkRanges({.voxel = settings, .rsm = {}, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "voxel"); }
-void validate(const RsmSettings& settings) { checkRanges({.voxel = {}, .rsm = settings, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "rsm"); }
-void validate(const LayerSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = settings, .direct = {}, .cones = {}, .force = {}}, "layers"); }
-void validate(const DirectSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = settings, .cones = {}, .force = {}}, "direct"); }
-void validate(const ConeSettings& settings) { checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = {}, .cones = settings, .force = {}}, "cones"); }
+void validate(const VoxelSettings& settings)
+{
+    checkRanges({.voxel = settings, .rsm = {}, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "voxel");
+}
+void validate(const RsmSettings& settings)
+{
+    checkRanges({.voxel = {}, .rsm = settings, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "rsm");
+}
+void validate(const LayerSettings& settings)
+{
+    checkRanges({.voxel = {}, .rsm = {}, .layers = settings, .direct = {}, .cones = {}, .force = {}}, "layers");
+}
+void validate(const DirectSettings& settings)
+{
+    checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = settings, .cones = {}, .force = {}}, "direct");
+}
+void validate(const ConeSettings& settings)
+{
+    checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = {}, .cones = settings, .force = {}}, "cones");
+}
 
 void validate(const Settings& settings)
 {

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <sys/wait.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /// Drives the real binary: arguments in; exit code, both streams and files out.
 namespace lrsm::test {
@@ -54,8 +54,14 @@ class Sandbox {
     fs::path root_;
 };
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
-inline bool isOneLine(const std::string& text) { return std::count(text.begin(), text.end(), '\n') == 1 && text.back() == '\n'; }
+inline bool isOneLine(const std::string& text)
+{
+    return std::count(text.begin(), text.end(), '\n') == 1 && text.back() == '\n';
+}
 
 }  // namespace lrsm::test

@@ -30,7 +30,8 @@ TEST_CASE("program: bench measures an axis, fits it, and writes a line a frame",
 TEST_CASE("program: bench refuses what it cannot measure in one line, and leaves nothing behind", "[apps][bench]")
 {
     Sandbox box;
-    for (const char* arguments : {"pixel -o result", "cones", "cones -o result --size 0x4", "cones -o result --scene none", "cones -o result --repeat 0", "cones -o result --set cone_counts=3"}) {
+    for (const char* arguments : {"pixel -o result", "cones", "cones -o result --size 0x4", "cones -o result --scene none", "cones -o result --repeat 0",
+                                  "cones -o result --set cone_counts=3"}) {
         const Outcome run = box.run(std::string("bench --quick ") + arguments);
         INFO(arguments);
         CHECK(run.code == 2);

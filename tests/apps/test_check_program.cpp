@@ -56,7 +56,8 @@ TEST_CASE("check program: a capture against itself is 0, bytes that differ are 1
         }
     // An XML parser that knows nothing of us.
     const std::optional<std::string> python = pythonWith("xml.etree.ElementTree");
-    const std::string parse = "cd '" + box.here().string() + "' && " + python.value_or("python3") + " -c 'import xml.etree.ElementTree as t; r = t.parse(\"junit.xml\").getroot(); "
+    const std::string parse = "cd '" + box.here().string() + "' && " + python.value_or("python3") +
+                              " -c 'import xml.etree.ElementTree as t; r = t.parse(\"junit.xml\").getroot(); "
                               "f = [c for c in r.iter(\"testcase\") if c.find(\"failure\") is not None]; "
                               "assert r.tag == \"testsuites\" and int(r.get(\"failures\")) == 1 and [c.get(\"name\") for c in f] == [\"lrsm0.depth.mip1\"]; "
                               "assert all(s.get(\"tests\") == str(len(s.findall(\"testcase\"))) for s in r)'";
@@ -75,11 +76,12 @@ TEST_CASE("check program: bad usage and bad input are one line and exit code 2",
     struct Case {
         std::string arguments, message;
     };
-    for (const Case& c : {Case{"check golden", "CANDIDATE"}, Case{"check none mine", "none"}, Case{"check golden none", "none"}, Case{"check mine golden", "manifest.json"},
-                          Case{"check golden empty", "no buffer in common"}, Case{"check golden mine --map bad.json", "bad.json: is no JSON"},
-                          Case{"check golden mine --only nonsense", "--only nonsense"}, Case{"check golden golden --bless", "--reason"},
-                          Case{"check golden golden --bless --reason ' '", "--reason"}, Case{"check golden golden --reason x", "without --bless"},
-                          Case{"check golden mine --bless --reason x", "manifest.json"}, Case{"check golden golden --bless --reason x --from-golden", "leave out"}}) {
+    for (const Case& c :
+         {Case{"check golden", "CANDIDATE"}, Case{"check none mine", "none"}, Case{"check golden none", "none"}, Case{"check mine golden", "manifest.json"},
+          Case{"check golden empty", "no buffer in common"}, Case{"check golden mine --map bad.json", "bad.json: is no JSON"},
+          Case{"check golden mine --only nonsense", "--only nonsense"}, Case{"check golden golden --bless", "--reason"},
+          Case{"check golden golden --bless --reason ' '", "--reason"}, Case{"check golden golden --reason x", "without --bless"},
+          Case{"check golden mine --bless --reason x", "manifest.json"}, Case{"check golden golden --bless --reason x --from-golden", "leave out"}}) {
         CAPTURE(c.arguments);
         const Outcome outcome = box.run(c.arguments);
         CHECK(outcome.code == 2);

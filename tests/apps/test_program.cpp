@@ -3,14 +3,14 @@
 #include "catch.h"
 #include "sandbox.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 
 // Drives the real binary: arguments in; exit code, both streams and files out.
 
@@ -131,7 +131,8 @@ TEST_CASE("render: every file and layer is there; frame.json repeats the frame; 
     const LayeredImage image = readImage((sandbox.here() / "a/deep/image.exr").string());
     CHECK(image.width == 32);
     CHECK(image.height == 24);
-    for (const char* name : {"", "direct", "irradiance", "indirect.diffuse", "indirect.specular", "combined", "albedo", "normal", "position", "depth", "opacity"})
+    for (const char* name :
+         {"", "direct", "irradiance", "indirect.diffuse", "indirect.specular", "combined", "albedo", "normal", "position", "depth", "opacity"})
         CHECK(image.find(name) != nullptr);
 
     const Json frame = Json::parse(readText(sandbox.here() / "a/deep/frame.json"));

@@ -71,7 +71,8 @@ TEST_CASE("program: reference killed or interrupted goes on to the same bytes, a
     for (const std::string& signal : {std::string("INT"), std::string("KILL")}) {
         // Waits for the first checkpoint, then strikes. Whether the run has ended by then or not, the bytes must be the same.
         std::ostringstream strike;
-        strike << "& pid=$!; while [ ! -e " << box.here() / "part" / "samples.bin" << " ] && kill -0 $pid; do sleep 0.01; done; kill -" << signal << " $pid; wait $pid";
+        strike << "& pid=$!; while [ ! -e " << box.here() / "part" / "samples.bin"
+               << " ] && kill -0 $pid; do sleep 0.01; done; kill -" << signal << " $pid; wait $pid";
         box.run(arguments + "part --threads 1", "exec", strike.str());
         REQUIRE(fs::exists(box.here() / "part" / "samples.bin"));
         if (!fs::exists(box.here() / "part" / "image.exr")) {
@@ -91,8 +92,8 @@ TEST_CASE("program: reference killed or interrupted goes on to the same bytes, a
 TEST_CASE("program: reference refuses what makes no sense in one line", "[apps][reference]")
 {
     const Sandbox box;
-    for (const std::string& arguments :
-         {std::string("--spp 0 -o x"), std::string("--samples 5:5 -o x"), std::string("--model half -o x"), std::string("--block 12 -o x"), std::string("--spp 4")}) {
+    for (const std::string& arguments : {std::string("--spp 0 -o x"), std::string("--samples 5:5 -o x"), std::string("--model half -o x"),
+                                         std::string("--block 12 -o x"), std::string("--spp 4")}) {
         CAPTURE(arguments);
         const Outcome outcome = box.run("reference" + kTinyReference + arguments);
         CHECK(outcome.code == 2);
@@ -107,10 +108,17 @@ TEST_CASE("program: compare finds each planted defect and fails by it", "[apps][
     REQUIRE(box.run("reference" + kTinyReference + "--spp 128 -o truth --quiet").code == 0);
     plant(box, "same.exr", [](Image<Vec3>&) {});
     plant(box, "shift.exr", [](Image<Vec3>& p) { std::rotate(p.texels.begin(), p.texels.end() - 1, p.texels.end()); });
-    plant(box, "gain.exr", [](Image<Vec3>& p) { for (Vec3& v : p.texels) v *= 1.02f; });
-    plant(box, "swap.exr", [](Image<Vec3>& p) { for (Vec3& v : p.texels) std::swap(v.r, v.g); });
+    plant(box, "gain.exr", [](Image<Vec3>& p) {
+        for (Vec3& v : p.texels) v *= 1.02f;
+    });
+    plant(box, "swap.exr", [](Image<Vec3>& p) {
+        for (Vec3& v : p.texels) std::swap(v.r, v.g);
+    });
     plant(box, "nan.exr", [](Image<Vec3>& p) { p.at(3, 4).r = std::numeric_limits<float>::quiet_NaN(); });
-    plant(box, "strip.exr", [](Image<Vec3>& p) { for (int y = 0; y < p.height; ++y) for (int x = 10; x < 12; ++x) p.at(x, y) = Vec3(0.0f); });
+    plant(box, "strip.exr", [](Image<Vec3>& p) {
+        for (int y = 0; y < p.height; ++y)
+            for (int x = 10; x < 12; ++x) p.at(x, y) = Vec3(0.0f);
+    });
 
     CHECK(box.run("compare same.exr truth --fail-above rmse=0 --fail-above flip=0 --fail-above energy=0 --fail-below ssim=0.999999 --quiet").code == 0);
     const auto fails = [&](const std::string& arguments, const std::string& word) {

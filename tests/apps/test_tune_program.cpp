@@ -54,8 +54,9 @@ TEST_CASE("program: tune says that nothing meets a budget, and writes the neares
 TEST_CASE("program: tune refuses what it cannot promise, in one line", "[apps][tune]")
 {
     Sandbox box;
-    for (const char* arguments : {"-o found.json", "--max-error 0.1", "--max-error 0 -o found.json", "--max-time soon -o found.json", "--max-time nan -o found.json",
-                                  "--max-error 0.1 --metric psnr -o found.json", "--max-error 1e-6 -o found.json", "--max-error 1 --spp 1 -o found.json"}) {
+    for (const char* arguments :
+         {"-o found.json", "--max-error 0.1", "--max-error 0 -o found.json", "--max-time soon -o found.json", "--max-time nan -o found.json",
+          "--max-error 0.1 --metric psnr -o found.json", "--max-error 1e-6 -o found.json", "--max-error 1 --spp 1 -o found.json"}) {
         const Outcome run = box.run(kTinyTune + arguments);
         CAPTURE(arguments, run.err);
         CHECK(run.code == 2);

@@ -4,8 +4,8 @@
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/render.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
+#include "core/settings/settings_table.h"
 #include "voxel/voxelize.h"
 
 #include <benchmark/benchmark.h>
@@ -43,7 +43,9 @@ struct Inputs {
     GBuffer gbuffer;
 
     Inputs(int sceneIndex, const Settings& chosen)
-        : scene(sceneOf(sceneIndex)), settings(chosen), needs(analyseRequirements(scene, settings.force)),
+        : scene(sceneOf(sceneIndex)),
+          settings(chosen),
+          needs(analyseRequirements(scene, settings.force)),
           opacity(buildPyramid(voxelize(scene, settings.voxel), settings.voxel)),
           gbuffer(renderGBuffer(scene, camera(), needs, {kWidth, kHeight}))
     {
@@ -103,8 +105,7 @@ void compositePass(benchmark::State& state)
     const GBuffer gbuffer = renderGBuffer(scene, scene.cameras.at(0), needs, {1280, 720});
     const Image<Vec3>& light = gbuffer.albedo;
     const Image<Vec3> specular = needs.specular ? light : Image<Vec3>();
-    for (auto _ : state)
-        benchmark::DoNotOptimize(composite(light, shadeIndirect(gbuffer, scene.cameras.at(0), light, specular)).texels.data());
+    for (auto _ : state) benchmark::DoNotOptimize(composite(light, shadeIndirect(gbuffer, scene.cameras.at(0), light, specular)).texels.data());
     state.SetItemsProcessed(state.iterations() * 1280 * 720);
     state.SetLabel(std::string(kScenes[state.range(0)]) + ", pixels");
 }

@@ -117,8 +117,7 @@ void directPass(benchmark::State& state)
     const std::vector<Rsm> maps{renderRsm(scene, scene.lights[0], kDiffuse, {})};
     DirectSettings settings;
     settings.shadows = state.range(0) != 0 ? Shadows::hard : Shadows::off;
-    for (auto _ : state)
-        benchmark::DoNotOptimize(traceDirect(gbuffer, scene, camera(), maps, nullptr, kDiffuse, settings).radiance.texels.data());
+    for (auto _ : state) benchmark::DoNotOptimize(traceDirect(gbuffer, scene, camera(), maps, nullptr, kDiffuse, settings).radiance.texels.data());
     state.SetItemsProcessed(state.iterations() * 1280 * 720);
     state.SetLabel(state.range(0) != 0 ? "pixels, hard shadows" : "pixels, no shadows");
 }

@@ -63,9 +63,20 @@ void voxelizeScene(benchmark::State& state, const Scene& scene)
     state.counters["voxels/s"] = benchmark::Counter(double(voxels), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void VoxelizeDetailed(benchmark::State& state) { voxelizeScene(state, detailedScene()); }
-void VoxelizeAtrium(benchmark::State& state) { voxelizeScene(state, atrium()); }
-BENCHMARK(VoxelizeDetailed)->ArgNames({"n", "mode"})->ArgsProduct({{128, 256, 512}, {0, 1, 2}})->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+void VoxelizeDetailed(benchmark::State& state)
+{
+    voxelizeScene(state, detailedScene());
+}
+void VoxelizeAtrium(benchmark::State& state)
+{
+    voxelizeScene(state, atrium());
+}
+BENCHMARK(VoxelizeDetailed)
+    ->ArgNames({"n", "mode"})
+    ->ArgsProduct({{128, 256, 512}, {0, 1, 2}})
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(VoxelizeAtrium)->ArgNames({"n", "mode"})->ArgsProduct({{128, 512}, {0, 1, 2}})->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void BuildPyramid(benchmark::State& state)
@@ -101,9 +112,7 @@ std::vector<Tap> marchTaps(const BitGrid& grid, bool scattered)
     std::vector<Tap> taps;
     std::mt19937 random(1);
     const float n = float(grid.frame.resolution);
-    const auto uniform = [&](float low, float high) {
-        return low + (high - low) * float(random()) * 0x1p-32f;
-    };
+    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random()) * 0x1p-32f; };
     const auto direction = [&] {
         const float x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
         return glm::normalize(Vec3(x, y, z));
@@ -162,10 +171,7 @@ void Sample(benchmark::State& state)
     });
     state.SetItemsProcessed(state.iterations() * std::int64_t(taps.size()));
 }
-BENCHMARK(Sample)
-    ->ArgNames({"directional", "float32", "pattern", "noskip"})
-    ->ArgsProduct({{0, 1}, {0, 1}, {0, 1, 2}, {0, 1}})
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(Sample)->ArgNames({"directional", "float32", "pattern", "noskip"})->ArgsProduct({{0, 1}, {0, 1}, {0, 1, 2}, {0, 1}})->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -4,9 +4,9 @@
 #include "core/base/file.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
+#include "core/settings/settings_table.h"
 
 #include <chrono>
 #include <cstdio>

@@ -46,8 +46,7 @@ inline Rsm randomRsm(int resolution, unsigned seed, float filled = 0.8f, float n
 }
 
 /// Every texel the same surface.
-inline Rsm flatRsm(int resolution, float depth, const Vec3& radiance = Vec3(1.0f), const Vec3& normal = Vec3(0.0f, 0.0f, 1.0f),
-                   float nDotL = 1.0f)
+inline Rsm flatRsm(int resolution, float depth, const Vec3& radiance = Vec3(1.0f), const Vec3& normal = Vec3(0.0f, 0.0f, 1.0f), float nDotL = 1.0f)
 {
     Rsm rsm;
     rsm.projection.resolution = resolution;

@@ -19,7 +19,10 @@ Lrsm smallLrsm(unsigned seed, float filled = 1.0f)
     return buildLrsm(randomRsm(32, seed, filled), settings);
 }
 
-const float* numbers(const LrsmTexel& t) { return t.radiance; }
+const float* numbers(const LrsmTexel& t)
+{
+    return t.radiance;
+}
 
 std::array<double, 11> numbersOf(const FilteredTexel& t)
 {
@@ -68,8 +71,7 @@ TEST_CASE("sampling a texel's centre at a whole level gives that texel, bit for 
         const int n = lrsm.resolutionAt(lod);
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x) {
-                const LrsmFootprint footprint =
-                    makeFootprint(lrsm, (float(x) + 0.5f) / float(n), (float(y) + 0.5f) / float(n), float(lod), fraction);
+                const LrsmFootprint footprint = makeFootprint(lrsm, (float(x) + 0.5f) / float(n), (float(y) + 0.5f) / float(n), float(lod), fraction);
                 const LrsmTexel& texel = lrsm.level(0, lod)[y * n + x];
                 const FilteredTexel sampled = sampleLayer(lrsm, 0, footprint);
                 REQUIRE(sampled.radiance == Vec3(texel.radiance[0], texel.radiance[1], texel.radiance[2]));

@@ -1,9 +1,9 @@
 #include "lrsm/gaussian_visibility.h"
 #include "synthetic_rsm.h"
 
+#include <catch.h>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <catch.h>
 
 using namespace lrsm;
 using Wide = boost::multiprecision::cpp_bin_float_50;
@@ -47,8 +47,14 @@ double worstError(const NormalCdf& phi, int samples, unsigned seed)
 TEST_CASE("Phi keeps its stated error by each method", "[lrsm][eq12]")
 {
     const int samples = 3000;
-    SECTION("polynomial") { CHECK(worstError(NormalCdf(GaussianMethod::polynomial), samples, 1) <= NormalCdf(GaussianMethod::polynomial).maxError()); }
-    SECTION("exact") { CHECK(worstError(NormalCdf(GaussianMethod::exact), samples, 2) <= NormalCdf(GaussianMethod::exact).maxError()); }
+    SECTION("polynomial")
+    {
+        CHECK(worstError(NormalCdf(GaussianMethod::polynomial), samples, 1) <= NormalCdf(GaussianMethod::polynomial).maxError());
+    }
+    SECTION("exact")
+    {
+        CHECK(worstError(NormalCdf(GaussianMethod::exact), samples, 2) <= NormalCdf(GaussianMethod::exact).maxError());
+    }
     SECTION("table")
     {
         const int entries = GENERATE(2, 3, 16, 64, 256, 1024, 4096, 65536);
@@ -124,7 +130,8 @@ TEST_CASE("the visible fraction keeps its stated error, tiny sigma included", "[
     std::mt19937 random(5);
     for (int i = 0; i < 3000; ++i) {
         // mu of few and of many trailing bits, so that zc - mu is not always exact.
-        const float mu = std::ldexp(test::uniform(random), -static_cast<int>(random() % 8)), sigma = std::ldexp(test::uniform(random, 0.5f, 1.0f), -static_cast<int>(random() % 24));
+        const float mu = std::ldexp(test::uniform(random), -static_cast<int>(random() % 8)),
+                    sigma = std::ldexp(test::uniform(random, 0.5f, 1.0f), -static_cast<int>(random() % 24));
         const float rc = std::ldexp(test::uniform(random, 0.5f, 1.0f), -static_cast<int>(random() % 16));
         // Half of the samples put an end of the window within a few sigma of the mean, where V changes.
         const float zc = (i & 1) ? test::uniform(random, -0.5f, 1.5f) : mu + rc + sigma * test::uniform(random, -4.0f, 4.0f);

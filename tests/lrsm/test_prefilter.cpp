@@ -62,7 +62,8 @@ Twin fromRsm(const Rsm& rsm, const std::vector<LayerRange>& all, const LayerRang
             const bool inNormal = texel.nDotL >= range.nDotLMin && (normalClosed ? texel.nDotL <= range.nDotLMax : texel.nDotL < range.nDotLMax);
             if (texel.coverage == 0.0f || !inDepth || !inNormal) continue;
             const double w = (double(z) - range.depthMin) / (double(range.depthMax) - range.depthMin);
-            const double values[11] = {texel.radiance.x, texel.radiance.y, texel.radiance.z, texel.normal.x, texel.normal.y, texel.normal.z, 1.0, w, w * w, 1.0, 0.0};
+            const double values[11] = {
+                texel.radiance.x, texel.radiance.y, texel.radiance.z, texel.normal.x, texel.normal.y, texel.normal.z, 1.0, w, w * w, 1.0, 0.0};
             for (int c = 0; c < 11; ++c) twin.value[c] += values[c] / (edge * edge);
         }
     return twin;

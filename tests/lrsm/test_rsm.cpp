@@ -96,7 +96,7 @@ TEST_CASE("RSM: a floor under a slanted sun reflects rho E cos / pi everywhere, 
             REQUIRE(texel.nDotL == Approx(-direction.y));
             for (int k = 0; k < 3; ++k) REQUIRE(texel.radiance[k] == Approx(rho[k] * irradiance[k] * -direction.y / kPiDouble));
             const Vec3 onNear = q.position + q.right * ((float(x) + 0.5f) / 32 - 1) * q.halfWidth + q.up * (1 - (float(y) + 0.5f) / 32) * q.halfWidth;
-            const float along = -onNear.y / direction.y;  // to the floor
+            const float along = -onNear.y / direction.y;                                       // to the floor
             REQUIRE(rsm.depthLinear.at(x, y) == Approx(along / q.depthRange()).margin(1e-3));  // vertices move by up to 1/512 texel
         }
     // The floor's area seen along the axis, in texels.

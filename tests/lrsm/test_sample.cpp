@@ -39,9 +39,15 @@ ConeSample randomSample(std::mt19937& random)
     return sample;
 }
 
-double phiTwin(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+double phiTwin(double x)
+{
+    return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
 
-double smoothstepTwin(double t) { return t <= 0.0 ? 0.0 : t >= 1.0 ? 1.0 : t * t * (3.0 - 2.0 * t); }
+double smoothstepTwin(double t)
+{
+    return t <= 0.0 ? 0.0 : t >= 1.0 ? 1.0 : t * t * (3.0 - 2.0 * t);
+}
 
 double decayTwin(const LayerRange& r, double z)
 {

@@ -50,11 +50,11 @@ inline Scene makeScene(std::initializer_list<Mesh> meshes, std::initializer_list
 inline std::vector<Mesh> boxRoom(bool open)
 {
     std::vector<Mesh> walls = {
-        rectangle({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}),   // floor, up
-        rectangle({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}),    // ceiling, down
-        rectangle({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}),   // back, +z
-        rectangle({-1, -1, -1}, {0, 2, 0}, {0, 0, 2}),   // left, +x
-        rectangle({1, -1, -1}, {0, 0, 2}, {0, 2, 0}),    // right, -x
+        rectangle({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}),  // floor, up
+        rectangle({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}),   // ceiling, down
+        rectangle({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}),  // back, +z
+        rectangle({-1, -1, -1}, {0, 2, 0}, {0, 0, 2}),  // left, +x
+        rectangle({1, -1, -1}, {0, 0, 2}, {0, 2, 0}),   // right, -x
     };
     if (!open) walls.push_back(rectangle({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}));  // front, -z
     return walls;

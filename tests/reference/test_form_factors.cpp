@@ -40,8 +40,7 @@ TEST_CASE("a point below a lit disk collects the disk's form factor", "[referenc
     disk.normals.assign(disk.positions.size(), Vec3(0, -1, 0));
     for (std::uint32_t i = 0; i < corners; ++i) disk.triangles.push_back({0u, 1u + i, 1u + (i + 1) % corners});
     // The receiver is so small that it takes no light from the disk's: its shadow on the disk is the error, 1e-6 of the area.
-    const Scene scene = makeScene({disk, rectangle({-5e-4f, 0, -5e-4f}, {0, 0, 1e-3f}, {1e-3f, 0, 0})}, {diffuse(Vec3(0.5f))},
-                                  {sun({0, 1, 0}, 3.0f)});
+    const Scene scene = makeScene({disk, rectangle({-5e-4f, 0, -5e-4f}, {0, 0, 1e-3f}, {1e-3f, 0, 0})}, {diffuse(Vec3(0.5f))}, {sun({0, 1, 0}, 3.0f)});
     const double radiance = 0.5 * 3.0 / 3.14159265358979, r2 = 1.0, h2 = 0.8 * 0.8;
     checkAgainst(3.14159265358979 * radiance * r2 / (r2 + h2), probe(scene, lookAt({0.3f, 0.3f, 0}, {0, 0, 0}, 1e-4f), kSamples));
 }

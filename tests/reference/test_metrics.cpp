@@ -106,8 +106,10 @@ TEST_CASE("planted: a missing strip stands out in its region and in FLIP's weigh
     const auto regions = measureRegions(picture, missing, splitRegions(96, 64, 4, 4));
     for (std::size_t i = 0; i < regions.size(); ++i) {
         CAPTURE(i);
-        if (i == 2) CHECK(regions[i].energyRatio < 0.1);
-        else CHECK(regions[i].energyRatio == 1.0);
+        if (i == 2)
+            CHECK(regions[i].energyRatio < 0.1);
+        else
+            CHECK(regions[i].energyRatio == 1.0);
     }
     const FlipPool pool = poolFlip(flip(picture, missing));
     CHECK(pool.weightedMedian > 0.3);

@@ -114,7 +114,8 @@ TEST_CASE("unbiased: agrees pixel by pixel with brute force from the eye's side 
         DVec3 sum(0), sumSquares(0);
         constexpr int count = 8000;
         for (int s = 0; s < count; ++s) {
-            const DVec3 e = fromLight ? oracle.lightSample(surface.position, surface.geometricNormal) : oracle.hemisphereSample(surface.position, surface.geometricNormal);
+            const DVec3 e =
+                fromLight ? oracle.lightSample(surface.position, surface.geometricNormal) : oracle.hemisphereSample(surface.position, surface.geometricNormal);
             sum += e;
             sumSquares += e * e;
         }
@@ -287,9 +288,7 @@ TEST_CASE("single-sided: the eye sees fronts, light passes backs, everything els
     const bool doubleSided = GENERATE(false, true);
     Scene scene = makeScene({rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0})}, {diffuse(Vec3(0.5f), doubleSided)}, {});
     const EmbreeScene embree(scene);
-    const auto stops = [&](RayKind kind, float fromZ) {
-        return embree.occluded({{0.1f, 0.2f, fromZ}, {0, 0, fromZ > 0 ? -1.0f : 1.0f}, 0, kInfinity, kind});
-    };
+    const auto stops = [&](RayKind kind, float fromZ) { return embree.occluded({{0.1f, 0.2f, fromZ}, {0, 0, fromZ > 0 ? -1.0f : 1.0f}, 0, kInfinity, kind}); };
     CHECK(stops(RayKind::eye, 1));
     CHECK(stops(RayKind::eye, -1) == doubleSided);
     CHECK(stops(RayKind::bounce, 1));

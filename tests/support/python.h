@@ -1,10 +1,10 @@
 #pragma once
 
+#include <sys/wait.h>
 #include <array>
 #include <cstdio>
 #include <optional>
 #include <string>
-#include <sys/wait.h>
 
 /// What a shell command prints (both streams), and how it ends.
 struct CommandOutcome {
@@ -32,10 +32,10 @@ inline std::optional<std::string> pythonWith(const std::string& module)
     return {};
 }
 
-#define LRSM_NEED_PYTHON(variable, module)                                                 \
-    const std::optional<std::string> variable##Found = pythonWith(module);                 \
-    if (!variable##Found) {                                                                \
+#define LRSM_NEED_PYTHON(variable, module)                                                    \
+    const std::optional<std::string> variable##Found = pythonWith(module);                    \
+    if (!variable##Found) {                                                                   \
         WARN("SKIPPED: no python3 with " << module << " (Debian: python3-" << module << ")"); \
-        return;                                                                            \
-    }                                                                                      \
+        return;                                                                               \
+    }                                                                                         \
     const std::string variable = *variable##Found

@@ -12,8 +12,8 @@ inline std::filesystem::path scenesFolder()
     return std::filesystem::path(LRSM_SOURCE_DIR) / ".." / "shared" / "scenes";
 }
 
-#define LRSM_NEED_SCENES()                                                                  \
-    if (!std::filesystem::exists(scenesFolder() / "SCENES.tsv")) {                          \
-        WARN("SKIPPED: no scenes in " << scenesFolder() << " (set LRSM_SCENES)");           \
-        return;                                                                             \
+#define LRSM_NEED_SCENES()                                                        \
+    if (!std::filesystem::exists(scenesFolder() / "SCENES.tsv")) {                \
+        WARN("SKIPPED: no scenes in " << scenesFolder() << " (set LRSM_SCENES)"); \
+        return;                                                                   \
     }

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <unistd.h>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
-#include <unistd.h>
 
 /// A folder of its own for one test, removed at the end.
 class ScratchFolder {

@@ -23,23 +23,26 @@ struct Element {
     double value, place;
 };
 
-Element ordered(double value, std::uint32_t magnitude, bool negative) { return {value, negative ? -double(magnitude) : double(magnitude)}; }
+Element ordered(double value, std::uint32_t magnitude, bool negative)
+{
+    return {value, negative ? -double(magnitude) : double(magnitude)};
+}
 
 Element elementAt(const NpyArray& array, std::size_t i, double scale)
 {
     switch (array.dtype) {
-        case Dtype::u1: return {double(element<std::uint8_t>(array, i)) * scale, double(element<std::uint8_t>(array, i))};
-        case Dtype::u2: return {double(element<std::uint16_t>(array, i)) * scale, double(element<std::uint16_t>(array, i))};
-        case Dtype::u4: return {double(element<std::uint32_t>(array, i)), double(element<std::uint32_t>(array, i))};
-        case Dtype::f2: {
-            const auto bits = element<std::uint16_t>(array, i);
-            return ordered(double(floatFromHalf(bits)), bits & 0x7fffu, bits & 0x8000u);
-        }
-        default: {
-            const auto value = element<float>(array, i);
-            const auto bits = std::bit_cast<std::uint32_t>(value);
-            return ordered(double(value), bits & 0x7fffffffu, bits & 0x80000000u);
-        }
+    case Dtype::u1: return {double(element<std::uint8_t>(array, i)) * scale, double(element<std::uint8_t>(array, i))};
+    case Dtype::u2: return {double(element<std::uint16_t>(array, i)) * scale, double(element<std::uint16_t>(array, i))};
+    case Dtype::u4: return {double(element<std::uint32_t>(array, i)), double(element<std::uint32_t>(array, i))};
+    case Dtype::f2: {
+        const auto bits = element<std::uint16_t>(array, i);
+        return ordered(double(floatFromHalf(bits)), bits & 0x7fffu, bits & 0x8000u);
+    }
+    default: {
+        const auto value = element<float>(array, i);
+        const auto bits = std::bit_cast<std::uint32_t>(value);
+        return ordered(double(value), bits & 0x7fffffffu, bits & 0x80000000u);
+    }
     }
 }
 

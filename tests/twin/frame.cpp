@@ -31,7 +31,10 @@ const Json& Frame::description(const std::string& name) const
     return manifest_["buffers"][found->second];
 }
 
-NpyArray Frame::golden(const std::string& name) const { return readNpy(folder_ + "/" + description(name)["file"].get<std::string>()); }
+NpyArray Frame::golden(const std::string& name) const
+{
+    return readNpy(folder_ + "/" + description(name)["file"].get<std::string>());
+}
 
 const NpyArray& Frame::input(const std::string& name)
 {
@@ -47,7 +50,8 @@ void Frame::output(const std::string& name, std::vector<std::byte> bytes)
     NpyArray array;
     array.dtype = dtypeByName(like["dtype"].get<std::string>(), name);
     array.shape = like["shape"].get<std::vector<std::size_t>>();
-    if (bytes.size() != elementCount(array.shape, name) * sizeOf(array.dtype)) throw std::runtime_error(name + ": the twin's buffer has another size than the golden's");
+    if (bytes.size() != elementCount(array.shape, name) * sizeOf(array.dtype))
+        throw std::runtime_error(name + ": the twin's buffer has another size than the golden's");
     array.bytes = std::move(bytes);
     outputs_[name] = std::move(array);
 }

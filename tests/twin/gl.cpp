@@ -70,8 +70,8 @@ std::unique_ptr<GlContext> GlContext::create(std::string& whyNot)
     }
     std::unique_ptr<GlContext> context(new GlContext);
     context->display_ = display;
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, kMajor, EGL_CONTEXT_MINOR_VERSION, kMinor,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,           kMajor,  EGL_CONTEXT_MINOR_VERSION, kMinor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     if (eglBindAPI(EGL_OPENGL_API)) context->context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (!context->context_ || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context->context_)) {
         whyNot = "no OpenGL 4.5 core context";
@@ -94,11 +94,26 @@ std::string GlContext::renderer() const
     return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", " + reinterpret_cast<const char*>(glGetString(GL_VERSION));
 }
 
-void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
-void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
-void deleteSampler(GLuint name) { glDeleteSamplers(1, &name); }
-void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-void deleteProgram(GLuint name) { glDeleteProgram(name); }
+void deleteTexture(GLuint name)
+{
+    glDeleteTextures(1, &name);
+}
+void deleteBuffer(GLuint name)
+{
+    glDeleteBuffers(1, &name);
+}
+void deleteSampler(GLuint name)
+{
+    glDeleteSamplers(1, &name);
+}
+void deleteFramebuffer(GLuint name)
+{
+    glDeleteFramebuffers(1, &name);
+}
+void deleteProgram(GLuint name)
+{
+    glDeleteProgram(name);
+}
 
 Texture makeTexture(GLenum target, const TexelFormat& format, int width, int height, int depth, int levels)
 {
@@ -122,7 +137,10 @@ void upload(const Texture& texture, GLenum target, const TexelFormat& format, in
         glTextureSubImage3D(texture(), level, 0, 0, 0, width, height, depth, format.format, format.type, texels);
 }
 
-void clear(const Texture& texture, const TexelFormat& format) { glClearTexImage(texture(), 0, format.format, format.type, nullptr); }
+void clear(const Texture& texture, const TexelFormat& format)
+{
+    glClearTexImage(texture(), 0, format.format, format.type, nullptr);
+}
 
 std::vector<std::byte> download(const Texture& texture, const TexelFormat& format, int level, std::size_t texels)
 {
@@ -161,7 +179,10 @@ StorageBuffer makeBuffer(std::span<const std::byte> bytes)
     return StorageBuffer(name);
 }
 
-StorageBuffer makeBuffer(std::size_t zeroBytes) { return makeBuffer(std::vector<std::byte>(zeroBytes)); }
+StorageBuffer makeBuffer(std::size_t zeroBytes)
+{
+    return makeBuffer(std::vector<std::byte>(zeroBytes));
+}
 
 std::vector<std::byte> download(const StorageBuffer& buffer, std::size_t size)
 {
@@ -171,7 +192,10 @@ std::vector<std::byte> download(const StorageBuffer& buffer, std::size_t size)
     return bytes;
 }
 
-void bindBuffer(GLuint binding, const StorageBuffer& buffer) { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer()); }
+void bindBuffer(GLuint binding, const StorageBuffer& buffer)
+{
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer());
+}
 
 Framebuffer makeFramebuffer(std::span<const Texture* const> colours, const Texture& depth)
 {
@@ -225,9 +249,18 @@ const Program& Programs::get(const std::vector<Stage>& stages, const std::vector
     return found != made_.end() ? found->second : made_.emplace(key, Program(stages, defines)).first->second;
 }
 
-void Program::use() const { glUseProgram(program_()); }
-void Program::set(const char* name, float value) const { glProgramUniform1f(program_(), glGetUniformLocation(program_(), name), value); }
-void Program::set(const char* name, int value) const { glProgramUniform1i(program_(), glGetUniformLocation(program_(), name), value); }
+void Program::use() const
+{
+    glUseProgram(program_());
+}
+void Program::set(const char* name, float value) const
+{
+    glProgramUniform1f(program_(), glGetUniformLocation(program_(), name), value);
+}
+void Program::set(const char* name, int value) const
+{
+    glProgramUniform1i(program_(), glGetUniformLocation(program_(), name), value);
+}
 void Program::set(const char* name, const std::vector<float>& v) const
 {
     const GLint at = glGetUniformLocation(program_(), name);

@@ -21,14 +21,15 @@ struct Arguments {
 
 int usage()
 {
-    std::puts("lrsm_twin GOLDEN [options]\n\n"
-              "Runs the passes of the capture GOLDEN on OpenGL 4.5, compares, and writes the buffers to CANDIDATE.\n"
-              "  -o CANDIDATE      folder for the buffers\n"
-              "  --from-golden     each pass reads the golden's buffers: differences do not add up\n"
-              "  --driver-formats  conversions and 8-bit filtering as the driver does them\n"
-              "  --repeat N        time: the shortest of N runs\n"
-              "  --frame FILE      a frame.json of the same frame, to print its times beside; more than one: the shortest\n"
-              "  --plant NAME      with one of these errors:");
+    std::puts(
+        "lrsm_twin GOLDEN [options]\n\n"
+        "Runs the passes of the capture GOLDEN on OpenGL 4.5, compares, and writes the buffers to CANDIDATE.\n"
+        "  -o CANDIDATE      folder for the buffers\n"
+        "  --from-golden     each pass reads the golden's buffers: differences do not add up\n"
+        "  --driver-formats  conversions and 8-bit filtering as the driver does them\n"
+        "  --repeat N        time: the shortest of N runs\n"
+        "  --frame FILE      a frame.json of the same frame, to print its times beside; more than one: the shortest\n"
+        "  --plant NAME      with one of these errors:");
     for (const Plant& plant : plants()) std::printf("    %-18s %-10s %s\n", plant.name, plant.pass, plant.meaning);
     return 2;
 }

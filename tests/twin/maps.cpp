@@ -11,8 +11,8 @@ namespace {
 class SceneDrawing {
   public:
     explicit SceneDrawing(Frame& frame)
-        : buffers_{inputBuffer(frame, "scene.positions", 0), inputBuffer(frame, "scene.triangles", 1), inputBuffer(frame, "scene.normals", 2),
-                   inputBuffer(frame, "scene.triangle_mesh", 3), inputBuffer(frame, "scene.meshes", 4), inputBuffer(frame, "scene.materials", 5)}
+        : buffers_{inputBuffer(frame, "scene.positions", 0),     inputBuffer(frame, "scene.triangles", 1), inputBuffer(frame, "scene.normals", 2),
+                   inputBuffer(frame, "scene.triangle_mesh", 3), inputBuffer(frame, "scene.meshes", 4),    inputBuffer(frame, "scene.materials", 5)}
     {
         const NpyArray &meshes = frame.input("scene.meshes"), &materials = frame.input("scene.materials");
         const auto* mesh = reinterpret_cast<const std::uint32_t*>(meshes.bytes.data());
@@ -60,7 +60,10 @@ class SceneDrawing {
     GLuint vertexArray_ = 0;
 };
 
-std::vector<std::string> rounding(const Frame& frame, const char* key) { return frame.is(key, "d3d") ? std::vector<std::string>{} : std::vector<std::string>{"HALF_NEAREST_EVEN"}; }
+std::vector<std::string> rounding(const Frame& frame, const char* key)
+{
+    return frame.is(key, "d3d") ? std::vector<std::string>{} : std::vector<std::string>{"HALF_NEAREST_EVEN"};
+}
 
 /// The stored layers of a light for lrsm_split.comp.glsl: bounds, and whether they are the outermost.
 std::vector<float> layerBounds(const Frame& frame, int light)
@@ -72,8 +75,9 @@ std::vector<float> layerBounds(const Frame& frame, int light)
         const Json& layer = partition[std::size_t(k)];
         if (layer["stored"].is_null()) continue;
         const int depth = k / normals, normal = k % normals;
-        for (const float value : {layer["depth_min"].get<float>(), layer["depth_max"].get<float>(), depth == 0 ? 1.0f : 0.0f, depth == depths - 1 ? 1.0f : 0.0f,
-                                  layer["n_dot_l_min"].get<float>(), layer["n_dot_l_max"].get<float>(), normal == 0 ? 1.0f : 0.0f, normal == normals - 1 ? 1.0f : 0.0f})
+        for (const float value :
+             {layer["depth_min"].get<float>(), layer["depth_max"].get<float>(), depth == 0 ? 1.0f : 0.0f, depth == depths - 1 ? 1.0f : 0.0f,
+              layer["n_dot_l_min"].get<float>(), layer["n_dot_l_max"].get<float>(), normal == 0 ? 1.0f : 0.0f, normal == normals - 1 ? 1.0f : 0.0f})
             bounds.push_back(value);
     }
     return bounds;
@@ -85,8 +89,9 @@ void rsm(Frame& frame, const Options& options, int light)
 {
     const Json& projection = frame.manifest()["lights"][std::size_t(light)]["projection"];
     const int n = projection["resolution"];
-    const Program& program = options.program(
-        "rsm", {{GL_VERTEX_SHADER, {"scene.vert.glsl"}}, {GL_FRAGMENT_SHADER, {"formats.glsl", "light.glsl", "surface.glsl", "rsm.frag.glsl"}}}, rounding(frame, "rsm_half_rounding"));
+    const Program& program =
+        options.program("rsm", {{GL_VERTEX_SHADER, {"scene.vert.glsl"}}, {GL_FRAGMENT_SHADER, {"formats.glsl", "light.glsl", "surface.glsl", "rsm.frag.glsl"}}},
+                        rounding(frame, "rsm_half_rounding"));
     program.setMatrix("clipFromWorld", numbers(projection["clip_from_world"]));
     program.set("light", light);
     const StorageBuffer lights = lightBuffer(frame);
@@ -158,7 +163,8 @@ void gbuffer(Frame& frame, const Options& options)
 {
     const Json& camera = frame.manifest()["camera"];
     const int width = frame.width(), height = frame.height();
-    const Program& program = options.program("gbuffer", {{GL_VERTEX_SHADER, {"scene.vert.glsl"}}, {GL_FRAGMENT_SHADER, {"surface.glsl", "gbuffer.frag.glsl"}}}, {});
+    const Program& program =
+        options.program("gbuffer", {{GL_VERTEX_SHADER, {"scene.vert.glsl"}}, {GL_FRAGMENT_SHADER, {"surface.glsl", "gbuffer.frag.glsl"}}}, {});
     program.setMatrix("clipFromWorld", numbers(camera["clip_from_world"]));
     program.set("eye", numbers(camera["position"]));
     program.set("forward", numbers(camera["forward"]));

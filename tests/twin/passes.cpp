@@ -29,7 +29,10 @@ constexpr Plant kPlants[] = {
 };
 
 /// Light i's partition: entry k is stored as layer `stored`.
-const Json& partition(const Frame& frame, int light) { return frame.manifest()["lights"][std::size_t(light)]["partition"]; }
+const Json& partition(const Frame& frame, int light)
+{
+    return frame.manifest()["lights"][std::size_t(light)]["partition"];
+}
 
 float cubeFace(const std::vector<float>& d)
 {
@@ -40,7 +43,10 @@ float cubeFace(const std::vector<float>& d)
 
 }  // namespace
 
-std::span<const Plant> plants() { return kPlants; }
+std::span<const Plant> plants()
+{
+    return kPlants;
+}
 
 const Program& Options::program(const std::string& pass, const std::vector<Stage>& stages, std::vector<std::string> defines) const
 {
@@ -65,7 +71,8 @@ StorageBuffer inputBuffer(Frame& frame, const std::string& name, GLuint binding)
 Texture inputTexture(Frame& frame, const std::string& name, GLenum target, const TexelFormat& format, int width, int height, int depth)
 {
     const NpyArray& array = frame.input(name);
-    if (array.bytes.size() != std::size_t(width) * std::size_t(height) * std::size_t(depth) * format.bytes) throw std::runtime_error(name + ": does not fit its texture");
+    if (array.bytes.size() != std::size_t(width) * std::size_t(height) * std::size_t(depth) * format.bytes)
+        throw std::runtime_error(name + ": does not fit its texture");
     Texture texture = makeTexture(target, format, width, height, depth, 1);
     upload(texture, target, format, 0, width, height, depth, array.bytes.data());
     return texture;

@@ -10,7 +10,7 @@ namespace lrsm::twin {
 /// An error to make on purpose: its shaders see PLANT_<name>.
 struct Plant {
     const char* name;
-    const char* pass;     ///< that a check must name
+    const char* pass;  ///< that a check must name
     const char* meaning;
 };
 std::span<const Plant> plants();
@@ -26,7 +26,7 @@ struct Options {
     const Program& compute(const std::string& pass, const std::vector<std::string>& files, std::vector<std::string> defines) const;
 };
 
-void voxelize(Frame& frame, const Options& options);   ///< voxelization=raster alone
+void voxelize(Frame& frame, const Options& options);  ///< voxelization=raster alone
 void voxelMips(Frame& frame, const Options& options);
 void rsm(Frame& frame, const Options& options, int light);
 void lrsm(Frame& frame, const Options& options, int light);

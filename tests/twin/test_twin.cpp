@@ -1,11 +1,11 @@
 #include "catch.h"
 #include "scratch.h"
 
-#include "apps/check/check.h"
 #include "apps/capture/record.h"
+#include "apps/check/check.h"
 #include "core/base/output_folder.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
+#include "core/settings/settings_table.h"
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"
 
@@ -58,7 +58,8 @@ std::string kindOf(const std::string& pass)
 
 std::string describe(const twin::Difference& d)
 {
-    return d.name + ": " + std::to_string(d.outside) + " of " + std::to_string(d.elements) + " outside, " + std::to_string(d.differing) + " differ, largest " + std::to_string(d.largest);
+    return d.name + ": " + std::to_string(d.outside) + " of " + std::to_string(d.elements) + " outside, " + std::to_string(d.differing) + " differ, largest " +
+           std::to_string(d.largest);
 }
 
 /// `lrsm check --from-golden` on what the frame made.
@@ -74,8 +75,8 @@ CheckReport check(const Capture& golden, const twin::Frame& frame, const std::st
 TEST_CASE("every pass on OpenGL, fed with the golden's inputs, is within the manifest's tolerances", "[twin]")
 {
     if (!context()) return;
-    const Golden golden = GENERATE(Golden{"cornell-box", "literal"}, Golden{"atrium", "balanced"}, Golden{"two-rooms", "literal"},
-                                   Golden{"cornell-glossy", "balanced"});
+    const Golden golden =
+        GENERATE(Golden{"cornell-box", "literal"}, Golden{"atrium", "balanced"}, Golden{"two-rooms", "literal"}, Golden{"cornell-glossy", "balanced"});
     CAPTURE(golden.scene, golden.preset);
     const ScratchFolder scratch;
     twin::Frame frame(capture(scratch, golden), false);

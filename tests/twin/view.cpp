@@ -33,7 +33,10 @@ class Pixels {
     std::vector<StorageBuffer> buffers_;
 };
 
-std::vector<std::string> specularDefine(const Frame& frame) { return frame.specular() ? std::vector<std::string>{"SPECULAR"} : std::vector<std::string>{}; }
+std::vector<std::string> specularDefine(const Frame& frame)
+{
+    return frame.specular() ? std::vector<std::string>{"SPECULAR"} : std::vector<std::string>{};
+}
 
 /// Binding of an output, all zero.
 StorageBuffer outputBuffer(std::size_t bytes, GLuint binding)
@@ -104,7 +107,8 @@ StorageBuffer layerBuffer(const Frame& frame)
     for (const Json& light : frame.manifest()["lights"])
         for (const Json& layer : light["partition"])
             if (!layer["stored"].is_null())
-                for (const char* key : {"depth_min", "depth_max", "delta", "decay_at_min", "decay_at_max"}) layers.push_back(numbers(Json::array({layer[key]}))[0]);
+                for (const char* key : {"depth_min", "depth_max", "delta", "decay_at_min", "decay_at_max"})
+                    layers.push_back(numbers(Json::array({layer[key]}))[0]);
     StorageBuffer buffer = makeBuffer(std::as_bytes(std::span(layers)));
     bindBuffer(9, buffer);
     return buffer;
@@ -205,7 +209,8 @@ void cones(Frame& frame, const Options& options)
     const Json &lights = frame.manifest()["lights"], &table = frame.manifest()["cones"];
     const int maxSteps = int(frame.input("tables.schedules").shape.at(1));
     const bool slab = frame.is("estimator", "slab");
-    const std::vector<std::string> files = {"pixel.glsl", "light.glsl", "opacity.glsl", "lrsm.glsl", "schedule.glsl", slab ? "march_slab.glsl" : "march_paper.glsl", "cones.comp.glsl"};
+    const std::vector<std::string> files = {
+        "pixel.glsl", "light.glsl", "opacity.glsl", "lrsm.glsl", "schedule.glsl", slab ? "march_slab.glsl" : "march_paper.glsl", "cones.comp.glsl"};
     const Program& program = options.compute("cones", files, coneDefines(frame, maxSteps, table["rings"].size()));
     const Pixels pixels(frame, program);
     setGrid(frame, program);
@@ -218,21 +223,28 @@ void cones(Frame& frame, const Options& options)
     program.set("originOffset", frame.number("normal_offset_voxels"));
     program.set("normalOffsetVoxels", frame.number("normal_offset_voxels"));
     program.set("varianceFloor", frame.manifest()["constants"]["variance_floor"].get<float>());
-    const std::pair<const char*, const char*> reals[] = {
-        {"push", "push"}, {"densityK", "density_k"}, {"vRadiusScale", "v_radius_scale"},
-        {"transmittanceCutoff", "transmittance_cutoff"}, {"emitterDelayTaps", "emitter_delay_taps"}, {"emitterDelayVoxels", "emitter_delay_voxels"},
-        {"emitterSlantCap", "emitter_slant_cap"}, {"rsmLevelBias", "rsm_level_bias"}, {"rsmMinLevel", "rsm_min_level"}};
+    const std::pair<const char*, const char*> reals[] = {{"push", "push"},
+                                                         {"densityK", "density_k"},
+                                                         {"vRadiusScale", "v_radius_scale"},
+                                                         {"transmittanceCutoff", "transmittance_cutoff"},
+                                                         {"emitterDelayTaps", "emitter_delay_taps"},
+                                                         {"emitterDelayVoxels", "emitter_delay_voxels"},
+                                                         {"emitterSlantCap", "emitter_slant_cap"},
+                                                         {"rsmLevelBias", "rsm_level_bias"},
+                                                         {"rsmMinLevel", "rsm_min_level"}};
     for (const auto& [uniform, key] : reals) program.set(uniform, frame.number(key));
     std::vector<int> rotation;
     for (const std::byte value : frame.input("tables.rotation").bytes) rotation.push_back(int(value));
     program.setArray("rotation", rotation);
 
-    const StorageBuffer lightRecords = lightBuffer(frame), layers = layerBuffer(frame), tables = coneTables(frame), schedules = inputBuffer(frame, "tables.schedules", 11);
+    const StorageBuffer lightRecords = lightBuffer(frame), layers = layerBuffer(frame), tables = coneTables(frame),
+                        schedules = inputBuffer(frame, "tables.schedules", 11);
     const StorageBuffer phi = frame.has("tables.gaussian") ? inputBuffer(frame, "tables.gaussian", 10) : outputBuffer(4, 10);
     int layerCount = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) layerCount += layersStored(frame, int(i));
     const int base = lights.empty() ? 1 : lights[0]["base_resolution"].get<int>(), levels = lights.empty() ? 1 : lights[0]["levels"].get<int>();
-    const Texture radiance = allLights(frame, "lrsm", "radiance", kHalf4, base, layerCount, levels), normal = allLights(frame, "lrsm", "normal", kHalf4, base, layerCount, levels),
+    const Texture radiance = allLights(frame, "lrsm", "radiance", kHalf4, base, layerCount, levels),
+                  normal = allLights(frame, "lrsm", "normal", kHalf4, base, layerCount, levels),
                   depth = allLights(frame, "lrsm", "depth", kUnorm16x4, base, layerCount, levels), opacity = opacityTexture(frame, options.driverFormats);
     const Sampler sampler = borderSampler();
     bindTexture(0, radiance, &sampler);

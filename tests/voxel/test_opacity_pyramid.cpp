@@ -53,8 +53,7 @@ double columnFraction(const BitGrid& grid, int level, int axis, const IVec3& blo
 
 double expectedTexel(const OpacityPyramid& pyramid, int level, int axis, const IVec3& p)
 {
-    if (pyramid.axes == OpacityAxes::directional && level <= 3)
-        return stored(columnFraction(pyramid.base, level, axis, p), pyramid.storage);
+    if (pyramid.axes == OpacityAxes::directional && level <= 3) return stored(columnFraction(pyramid.base, level, axis, p), pyramid.storage);
     // UNORM8: sum the codes, which a double holds exactly.
     const double unit = pyramid.storage == Storage::gpu && level > 1 ? 255.0 : 1.0;
     double sum = 0.0, largest = 0.0;

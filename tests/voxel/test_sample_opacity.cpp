@@ -92,7 +92,10 @@ DVec3 bruteQuadrilinear(const OpacityPyramid& pyramid, const Vec3& p, float leve
     return mix;
 }
 
-bool sameBits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool sameBits(const Vec3& a, const Vec3& b)
+{
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 struct Random {
     std::mt19937 engine{11};
@@ -124,8 +127,7 @@ TEST_CASE("lookups equal a brute-force quadrilinear sum in double, border includ
                     const int whole = int(random.engine() % unsigned(pyramid.levels()));
                     const Vec3 atLevel = sampleLevel(pyramid, p, whole, kind.fraction);
                     const DVec3 expectedLevel = bruteLevel(pyramid, p, whole, kind.fraction);
-                    for (int axis = 0; axis < 3; ++axis)
-                        worst = std::max(worst, std::abs(double(atLevel[axis]) - expectedLevel[std::size_t(axis)]));
+                    for (int axis = 0; axis < 3; ++axis) worst = std::max(worst, std::abs(double(atLevel[axis]) - expectedLevel[std::size_t(axis)]));
                 }
                 INFO(n << "^3");
                 CHECK(worst < 1.5e-6);  // float fractions of coordinates up to 35 voxels
@@ -165,8 +167,7 @@ TEST_CASE("the order of operations is fixed: x, y, z, level, then the division b
             const float level = random(0.0f, 4.99f);
             const int lower = int(level);
             Vec3 expected;
-            for (int axis = 0; axis < 3; ++axis)
-                expected[axis] = lerp(blend(p, lower, axis), blend(p, lower + 1, axis), level - float(lower)) / unit;
+            for (int axis = 0; axis < 3; ++axis) expected[axis] = lerp(blend(p, lower, axis), blend(p, lower + 1, axis), level - float(lower)) / unit;
             different += !sameBits(expected, sampleOpacity(pyramid, p, level, kind.fraction));
         }
         CHECK(different == 0);
@@ -291,7 +292,7 @@ TEST_CASE("the empty-space shortcut changes no bit and finds what is empty", "[v
     withOpacitySampler(lone, FilterFraction::exact, [](const auto& sample) {
         CHECK(sample.empty(Vec3(20.0f), 3.0f));
         CHECK_FALSE(sample.empty(Vec3(20.0f), 5.0f));
-        CHECK(sample.empty(Vec3(6.0f), 1.0f));   // brick 1: levels 0 and 1 read voxels 2.. and 3..
+        CHECK(sample.empty(Vec3(6.0f), 1.0f));  // brick 1: levels 0 and 1 read voxels 2.. and 3..
         CHECK_FALSE(sample.empty(Vec3(6.0f), 2.0f));
         CHECK_FALSE(sample.empty(Vec3(1.0f), 0.0f));
         CHECK_FALSE(sample.empty(Vec3(-1.0f), 0.0f));  // outside: not asked

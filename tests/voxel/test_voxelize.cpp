@@ -29,10 +29,9 @@ std::vector<Case> awkwardTriangles(int n, unsigned seed, int count)
     const auto uniform = [&](float low, float high) { return low + (high - low) * float(random()) * 0x1p-32f; };
     const auto point = [&](float low, float high) { return Vec3(uniform(low, high), uniform(low, high), uniform(low, high)); };
     const float edge = float(n);
-    std::vector<Case> cases = {{"scene-sized", {}}, {"small", {}},    {"sliver", {}}, {"on voxel corners", {}}, {"axis-aligned", {}},
-                               {"edge-on", {}},     {"segment", {}},  {"point", {}},  {"partly outside", {}},   {"far outside", {}},
-                               {"on half voxels", {}},
-                               {"grazing corners", {}}};
+    std::vector<Case> cases = {{"scene-sized", {}},    {"small", {}},       {"sliver", {}},         {"on voxel corners", {}},
+                               {"axis-aligned", {}},   {"edge-on", {}},     {"segment", {}},        {"point", {}},
+                               {"partly outside", {}}, {"far outside", {}}, {"on half voxels", {}}, {"grazing corners", {}}};
     for (int i = 0; i < count; ++i) {
         const Vec3 a = point(0, edge), b = point(0, edge), c = point(0, edge);
         cases[0].triangles.push_back({a, b, c});

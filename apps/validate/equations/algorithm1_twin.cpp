@@ -109,7 +109,8 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
         Filtered sum;
         for (int fine = static_cast<int>(lod); fine <= std::min(static_cast<int>(lod) + 1, lrsm.levels() - 1); ++fine) {
             const double n = lrsm.baseResolution >> fine, share = tent(lod - fine);
-            const double u = (fractionOf(p.u * n - 0.5, settings.filterFraction, toTie) + 0.5) / n, v = (fractionOf(p.v * n - 0.5, settings.filterFraction, toTie) + 0.5) / n;
+            const double u = (fractionOf(p.u * n - 0.5, settings.filterFraction, toTie) + 0.5) / n,
+                         v = (fractionOf(p.v * n - 0.5, settings.filterFraction, toTie) + 0.5) / n;
             const Filtered one = sample(lrsm, layer, u, v, fine);
             sum.radiance += share * one.radiance;
             sum.normal += share * one.normal;

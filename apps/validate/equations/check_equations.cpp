@@ -1,7 +1,7 @@
 #include "apps/validate/equations/check_equations.h"
 
-#include "core/base/errors.h"
 #include "apps/validate/equations/check_run.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -57,8 +57,9 @@ std::string equationsMarkdown(const EquationReport& report)
     std::string table = "| equation | function | oracle | domain | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const EquationCheck& check : report.checks) {
         const bool exact = check.boundName == "exact";
-        table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.oracle) + " | " + cell(check.domain) + " | " + cell(check.errorKind) + " | " +
-                 (exact ? "exact" : "`" + check.boundName + "`") + " | " + (exact ? "0" : number(check.bound)) + " | " + number(check.worst) + " |\n";
+        table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.oracle) + " | " + cell(check.domain) + " | " +
+                 cell(check.errorKind) + " | " + (exact ? "exact" : "`" + check.boundName + "`") + " | " + (exact ? "0" : number(check.bound)) + " | " +
+                 number(check.worst) + " |\n";
     }
     return table;
 }

@@ -12,8 +12,8 @@ namespace lrsm {
 
 /// One function held against one oracle over one domain.
 struct EquationCheck {
-    std::string equation = {};   ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7" for cones,
-                            ///< "base" for the elementary functions that all of them stand on
+    std::string equation = {};   ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7"
+                                 ///< for cones, "base" for the elementary functions that all of them stand on
     std::string function = {};   ///< "gaussianVisibility, polynomial"
     std::string oracle = {};     ///< "50-digit erfc (Boost.Multiprecision)"
     std::string domain = {};     ///< in words, with ranges
@@ -30,9 +30,9 @@ struct EquationCheck {
 
 /// One end, or one point, of a choice of speed against accuracy: error beside time.
 struct EquationTrade {
-    std::string setting = {};   ///< key in docs/settings.md: "gaussian", "storage", "half_rounding"
-    std::string choice = {};    ///< "table(256)", "float32", "nearest_even"
-    std::string quantity = {};  ///< what the error is of: "V, Eq. 12"
+    std::string setting = {};                          ///< key in docs/settings.md: "gaussian", "storage", "half_rounding"
+    std::string choice = {};                           ///< "table(256)", "float32", "nearest_even"
+    std::string quantity = {};                         ///< what the error is of: "V, Eq. 12"
     double bound = 0.0, worst = 0.0, meanError = 0.0;  ///< absolute; signed mean in `bias`
     double bias = 0.0;
     double nanoseconds = 0.0;  ///< median time of a call; 0: not measured

@@ -59,16 +59,16 @@ double medianNanoseconds(std::size_t inputs, const Call& call)
 }
 
 /// The groups, each in a file of its own.
-void checkElementary(CheckRun& run);       // "base"
-void checkFormats(CheckRun& run);          // "table1"
-void checkGaussian(CheckRun& run);         // "12"
-void checkTerms(CheckRun& run);            // "8", "10", "11", "sec5"
-void checkCones(CheckRun& run);            // "1"
-void checkVoxels(CheckRun& run);           // "sec3"
-void checkConeSets(CheckRun& run);         // "fig7"
-void addStorageTrades(CheckRun& run);      // trades and a curve of "table1"
-void checkDirectSums(CheckRun& run);       // "2", "3", "4", "7", and "12" as a model of "7"
-void checkLayers(CheckRun& run);           // "6", "8", "10", "11", "13", "14", "15", "table1"
-void checkSample(CheckRun& run);           // "5", "9", "14", "15"
+void checkElementary(CheckRun& run);   // "base"
+void checkFormats(CheckRun& run);      // "table1"
+void checkGaussian(CheckRun& run);     // "12"
+void checkTerms(CheckRun& run);        // "8", "10", "11", "sec5"
+void checkCones(CheckRun& run);        // "1"
+void checkVoxels(CheckRun& run);       // "sec3"
+void checkConeSets(CheckRun& run);     // "fig7"
+void addStorageTrades(CheckRun& run);  // trades and a curve of "table1"
+void checkDirectSums(CheckRun& run);   // "2", "3", "4", "7", and "12" as a model of "7"
+void checkLayers(CheckRun& run);       // "6", "8", "10", "11", "13", "14", "15", "table1"
+void checkSample(CheckRun& run);       // "5", "9", "14", "15"
 
 }  // namespace lrsm

@@ -25,8 +25,13 @@ void checkSix(CheckRun& run)
         for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(double(set.directions[i][c]) - expected[c]));
         return error;
     });
-    run.add({.equation = "fig7", .function = "makeConeSet, the paper's six", .oracle = "1/4 and 3/20, 60 degrees, axes by sine and cosine", .domain = "all six", .boundName = "kConeSetMaxError",
-             .errorKind = "absolute", .bound = double(kConeSetMaxError)},
+    run.add({.equation = "fig7",
+             .function = "makeConeSet, the paper's six",
+             .oracle = "1/4 and 3/20, 60 degrees, axes by sine and cosine",
+             .domain = "all six",
+             .boundName = "kConeSetMaxError",
+             .errorKind = "absolute",
+             .bound = double(kConeSetMaxError)},
             worst, "cone " + exactText(worst.input[0]));
 }
 
@@ -45,12 +50,16 @@ void checkAll(CheckRun& run)
             // Equal polar width (paper) or equal weight 1/count (slab).
             const double rings = double(set.rings.size()), h = kPiDouble / 2 / (2 * rings - 1), index = double(&ring - set.rings.data());
             const bool slab = settings.estimator == Estimator::slab;
-            const double outer = slab ? std::asin(std::sqrt(std::min(1.0, (placed + ring.count) / settings.count))) : rings == 1.0 ? kPiDouble / 2 : (2 * index + 1) * h;
+            const double outer = slab           ? std::asin(std::sqrt(std::min(1.0, (placed + ring.count) / settings.count)))
+                                 : rings == 1.0 ? kPiDouble / 2
+                                                : (2 * index + 1) * h;
             const double a = std::sin(angle), b = std::sin(outer), weight = (b * b - a * a) / ring.count;
             // The cosine of an angle near the horizon is what arccos loses: angles to the root of it.
-            error = std::max({error, std::abs(double(ring.weight) - weight), 0.1 * std::abs(double(ring.outerAngle) - outer), 0.1 * std::abs(double(ring.innerAngle) - angle)});
-            const double half = slab ? std::acos(1.0 - (std::cos(angle) - std::cos(outer)) / ring.count)
-                                     : rings == 1.0 ? (ring.count == 1 ? kPiDouble / 3 : kPiDouble / 4) : h;
+            error = std::max({error, std::abs(double(ring.weight) - weight), 0.1 * std::abs(double(ring.outerAngle) - outer),
+                              0.1 * std::abs(double(ring.innerAngle) - angle)});
+            const double half = slab           ? std::acos(1.0 - (std::cos(angle) - std::cos(outer)) / ring.count)
+                                : rings == 1.0 ? (ring.count == 1 ? kPiDouble / 3 : kPiDouble / 4)
+                                               : h;
             error = std::max(error, 0.1 * std::abs(double(ring.tanHalf) / std::tan(std::min(half, 1.4)) - 1.0));
             if (slab) error = std::max(error, 0.1 * std::abs(double(ring.axisAngle) - 0.5 * (angle + outer)));
             if (!slab) error = std::max(error, std::abs(double(ring.axisAngle) - (rings == 1.0 ? (ring.count == 1 ? 0.0 : kPiDouble / 4) : 2 * index * h)));
@@ -61,9 +70,15 @@ void checkAll(CheckRun& run)
         if (placed != settings.count) return 1.0;
         return std::max(error, 0.1 * std::abs(total - 1.0));
     });
-    run.add({.equation = "fig7", .function = "makeConeSet, rings of any count", .oracle = "integral of the cosine over each ring", .domain = "1 .. 256 cones, both estimators, all rotations",
-             .boundName = "kConeSetMaxError", .errorKind = "absolute weight; tenth of angles and sums", .bound = double(kConeSetMaxError)},
-            worst, "count = " + std::to_string(1 + static_cast<int>(worst.input[0]) % 256) + ", case " + std::to_string(static_cast<int>(worst.input[0]) / 256));
+    run.add({.equation = "fig7",
+             .function = "makeConeSet, rings of any count",
+             .oracle = "integral of the cosine over each ring",
+             .domain = "1 .. 256 cones, both estimators, all rotations",
+             .boundName = "kConeSetMaxError",
+             .errorKind = "absolute weight; tenth of angles and sums",
+             .bound = double(kConeSetMaxError)},
+            worst,
+            "count = " + std::to_string(1 + static_cast<int>(worst.input[0]) % 256) + ", case " + std::to_string(static_cast<int>(worst.input[0]) / 256));
 
     // Strata: cosine-weighted and stratified, so 16 rotations together integrate a quadratic of the direction well.
     const auto strata = exhaust(64, [&](std::uint64_t i) {
@@ -80,13 +95,20 @@ void checkAll(CheckRun& run)
                     square += d.z * d.z / (kRotations * settings.count);
                     // The r-th point of the set lies at (r + 1/2) / 16 of its stratum's area, at the bit-reversed share of its azimuth.
                     const int reversed = ((r & 1) << 3) | ((r & 2) << 1) | ((r & 4) >> 1) | ((r & 8) >> 3);
-                    const double r2 = (ring.first + ring.count * (r + 0.5) / 16.0) / settings.count, azimuth = 2.0 * kPiDouble * (k + (reversed + 0.5) / 16.0) / ring.count;
-                    error = std::max({error, std::abs(d.x - std::sqrt(r2) * std::cos(azimuth)), std::abs(d.y - std::sqrt(r2) * std::sin(azimuth)), std::abs(d.x * d.x + d.y * d.y + d.z * d.z - 1.0)});
+                    const double r2 = (ring.first + ring.count * (r + 0.5) / 16.0) / settings.count,
+                                 azimuth = 2.0 * kPiDouble * (k + (reversed + 0.5) / 16.0) / ring.count;
+                    error = std::max({error, std::abs(d.x - std::sqrt(r2) * std::cos(azimuth)), std::abs(d.y - std::sqrt(r2) * std::sin(azimuth)),
+                                      std::abs(d.x * d.x + d.y * d.y + d.z * d.z - 1.0)});
                 }
         return std::max(error, std::abs(square - 0.5));  // E[cos^2] of a cosine-weighted direction; the midpoint rule is exact in r^2
     });
-    run.add({.equation = "fig7", .function = "makeConeSet, strata", .oracle = "Malley's disc with a Hammersley set, in double", .domain = "1 .. 64 cones, all 16 rotations", .boundName = "kConeSetMaxError",
-             .errorKind = "absolute", .bound = double(kConeSetMaxError)},
+    run.add({.equation = "fig7",
+             .function = "makeConeSet, strata",
+             .oracle = "Malley's disc with a Hammersley set, in double",
+             .domain = "1 .. 64 cones, all 16 rotations",
+             .boundName = "kConeSetMaxError",
+             .errorKind = "absolute",
+             .bound = double(kConeSetMaxError)},
             strata, "count = " + std::to_string(1 + static_cast<int>(strata.input[0])));
 }
 
@@ -108,33 +130,53 @@ void checkCounts(CheckRun& run)
         }
         return ringCounts(count) == expected ? 0.0 : 1.0;
     });
-    run.add({.equation = "fig7", .function = "ringCounts", .oracle = "shares of solid angle in double", .domain = "1 .. 256 cones", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0}, counts,
-            "count = 1 + " + exactText(counts.input[0]));
+    run.add({.equation = "fig7",
+             .function = "ringCounts",
+             .oracle = "shares of solid angle in double",
+             .domain = "1 .. 256 cones",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
+            counts, "count = 1 + " + exactText(counts.input[0]));
     const auto pattern = exhaust(64, [](std::uint64_t i) {
         constexpr int kBayer[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
         const int x = static_cast<int>(i % 8), y = static_cast<int>(i / 8);
         return rotationOfPixel(x, y, Rotation::strata) == kBayer[y % 4][x % 4] && rotationOfPixel(x, y, Rotation::none) == 0 ? 0.0 : 1.0;
     });
-    run.add({.equation = "fig7", .function = "rotationOfPixel", .oracle = "the 4x4 ordered-dither matrix, written out", .domain = "8x8 pixels", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "fig7",
+             .function = "rotationOfPixel",
+             .oracle = "the 4x4 ordered-dither matrix, written out",
+             .domain = "8x8 pixels",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             pattern, "pixel " + exactText(pattern.input[0]));
 }
 
 void checkSpecular(CheckRun& run)
 {
     const SearchSpace<float, 1> roughness{{{{0.0f, 1.0f}}}, {{1.0f}, {0.0f}, {0.7598357f}}};
-    const auto worst = findWorst(roughness, run.budget(20000), [](const auto& in) {
-        ConeSettings settings;
-        settings.specularAperture = SpecularAperture::roughness;
-        const double alpha = double(in[0]) * double(in[0]), exact = std::min(std::tan(kPiDouble / 3), alpha < 1.0 ? std::tan(2.0 * std::atan(alpha)) : 1e9);
-        settings.specularAperture = SpecularAperture::roughness;
-        const double error = std::abs(double(specularTanHalf(settings, in[0])) - exact);
-        settings.specularAperture = SpecularAperture::fixed;
-        settings.specularApertureDegrees = 1.0f + 159.0f * in[0];
-        const double fixed = std::tan(double(settings.specularApertureDegrees) * kPiDouble / 360.0);
-        return std::max(error, std::abs(double(specularTanHalf(settings, 0.3f)) / fixed - 1.0));
-    }, 821);
-    run.add({.equation = "fig7", .function = "specularTanHalf", .oracle = "tan(2 atan(roughness^2)), at most tan 60 degrees; tan of half the fixed angle", .domain = "roughness 0 .. 1; 1 .. 160 degrees",
-             .boundName = "kSpecularTanMaxError", .errorKind = "absolute; relative if fixed", .bound = double(kSpecularTanMaxError)},
+    const auto worst = findWorst(
+        roughness, run.budget(20000),
+        [](const auto& in) {
+            ConeSettings settings;
+            settings.specularAperture = SpecularAperture::roughness;
+            const double alpha = double(in[0]) * double(in[0]), exact = std::min(std::tan(kPiDouble / 3), alpha < 1.0 ? std::tan(2.0 * std::atan(alpha)) : 1e9);
+            settings.specularAperture = SpecularAperture::roughness;
+            const double error = std::abs(double(specularTanHalf(settings, in[0])) - exact);
+            settings.specularAperture = SpecularAperture::fixed;
+            settings.specularApertureDegrees = 1.0f + 159.0f * in[0];
+            const double fixed = std::tan(double(settings.specularApertureDegrees) * kPiDouble / 360.0);
+            return std::max(error, std::abs(double(specularTanHalf(settings, 0.3f)) / fixed - 1.0));
+        },
+        821);
+    run.add({.equation = "fig7",
+             .function = "specularTanHalf",
+             .oracle = "tan(2 atan(roughness^2)), at most tan 60 degrees; tan of half the fixed angle",
+             .domain = "roughness 0 .. 1; 1 .. 160 degrees",
+             .boundName = "kSpecularTanMaxError",
+             .errorKind = "absolute; relative if fixed",
+             .bound = double(kSpecularTanMaxError)},
             worst, inputText<float, 1>({"roughness"}, worst.input));
 }
 

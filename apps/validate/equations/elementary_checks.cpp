@@ -19,21 +19,33 @@ void checkFastLog2(CheckRun& run)
         const auto exact = static_cast<double>(std::log2(static_cast<long double>(x)));
         return std::max(0.0, std::abs(double(fastLog2(x)) - exact) - std::abs(exact) * 0x1p-24);
     };
-    auto worst = exhaust(0x800000u, [&](std::uint64_t i) { return error(valueAt(i)); }, stride);
+    auto worst = exhaust(
+        0x800000u, [&](std::uint64_t i) { return error(valueAt(i)); }, stride);
     float worstInput = valueAt(static_cast<std::uint64_t>(std::max(0.0, worst.input[0])));
     // The octaves next to 1, where nothing hides behind the result's own rounding.
     const SearchSpace<float, 1> space{{{{0.5f, 2.0f}}}, {{0.70710678f}, {1.41421356f}, {1.0f}, {0.5f}, {2.0f}}};
-    const auto near = findWorst(space, run.budget(400000), [&](const auto& in) { return error(in[0]); }, 101);
+    const auto near = findWorst(
+        space, run.budget(400000), [&](const auto& in) { return error(in[0]); }, 101);
     if (near.error > worst.error) worstInput = near.input[0];
     worst.include(Worst<double, 1>{{0.0}, near.error, near.sum, near.swept, near.evaluations});
-    run.add({.equation = "base", .function = "fastLog2", .oracle = "log2 in long double", .domain = "every mantissa, all normal exponents",
-             .boundName = "kFastLog2MaxError", .errorKind = "absolute, beyond |log2 x| 2^-24", .bound = double(kFastLog2MaxError),
+    run.add({.equation = "base",
+             .function = "fastLog2",
+             .oracle = "log2 in long double",
+             .domain = "every mantissa, all normal exponents",
+             .boundName = "kFastLog2MaxError",
+             .errorKind = "absolute, beyond |log2 x| 2^-24",
+             .bound = double(kFastLog2MaxError),
              .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return fastLog2(0.25f + float(i)); }) : 0.0},
             worst, "x = " + exactText(worstInput));
 
     const auto powers = exhaust(254, [](std::uint64_t i) { return fastLog2(std::ldexp(1.0f, int(i) - 126)) == float(int(i) - 126) ? 0.0 : 1.0; });
-    run.add({.equation = "base", .function = "fastLog2, powers of two", .oracle = "the exponent", .domain = "2^-126 .. 2^127", .boundName = "exact",
-             .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "base",
+             .function = "fastLog2, powers of two",
+             .oracle = "the exponent",
+             .domain = "2^-126 .. 2^127",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             powers, "x = 2^(i - 126), i = " + exactText(powers.input[0]));
 }
 
@@ -46,18 +58,29 @@ void checkFastExp2(CheckRun& run)
         return static_cast<double>(std::abs((static_cast<long double>(fastExp2(in[0])) - exact) / exact));
     };
     auto worst = findWorst(space, run.budget(1000000), error, 102);
-    run.add({.equation = "base", .function = "fastExp2", .oracle = "exp2 in long double", .domain = "[-126, 128)", .boundName = "kFastExp2MaxError",
-             .errorKind = "relative", .bound = double(kFastExp2MaxError),
+    run.add({.equation = "base",
+             .function = "fastExp2",
+             .oracle = "exp2 in long double",
+             .domain = "[-126, 128)",
+             .boundName = "kFastExp2MaxError",
+             .errorKind = "relative",
+             .bound = double(kFastExp2MaxError),
              .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return fastExp2(-float(i) * 0.01f); }) : 0.0},
             worst, inputText<float, 1>({"x"}, worst.input));
 
     const auto edges = exhaust(254 + 6, [](std::uint64_t i) {
         if (i < 254) return fastExp2(float(int(i) - 126)) == std::ldexp(1.0f, int(i) - 126) ? 0.0 : 1.0;
-        constexpr float kBelow[3] = {-126.00001f, -200.0f, -std::numeric_limits<float>::infinity()}, kAbove[3] = {128.0f, 1e30f, std::numeric_limits<float>::infinity()};
+        constexpr float kBelow[3] = {-126.00001f, -200.0f, -std::numeric_limits<float>::infinity()},
+                        kAbove[3] = {128.0f, 1e30f, std::numeric_limits<float>::infinity()};
         return i < 257 ? (fastExp2(kBelow[i - 254]) == 0.0f ? 0.0 : 1.0) : (std::isinf(fastExp2(kAbove[i - 257])) ? 0.0 : 1.0);
     });
-    run.add({.equation = "base", .function = "fastExp2, whole numbers and saturation", .oracle = "ldexp", .domain = "-126 .. 127; beyond: 0, infinity",
-             .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "base",
+             .function = "fastExp2, whole numbers and saturation",
+             .oracle = "ldexp",
+             .domain = "-126 .. 127; beyond: 0, infinity",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             edges, "case " + exactText(edges.input[0]));
 }
 
@@ -67,44 +90,66 @@ void addExact(CheckRun& run, EquationCheck check, const SearchSpace<double, 1>& 
 {
     check.equation = "base";
     check.oracle = "50 digits (Boost.Multiprecision)";
-    const auto worst = findWorst(space, run.budget(calls), [&](const auto& in) { return error(in[0]); }, stream);
+    const auto worst = findWorst(
+        space, run.budget(calls), [&](const auto& in) { return error(in[0]); }, stream);
     run.add(std::move(check), worst, inputText<double, 1>({"x"}, worst.input));
 }
 
 void checkExact(CheckRun& run)
 {
-    addExact(run, {.function = "log2Exact", .domain = "2^-1000 .. 2^1000, and [1/2, 2]", .boundName = "kLog2MaxError",
-                   .errorKind = "absolute / max(1, |log2 x|)", .bound = kLog2MaxError},
-             {{{{0x1p-1000, 0x1p1000, Spacing::logarithmic}}}, {{0.70710678118654752440}, {1.0}, {0.5}, {2.0}, {1.41421356237309504880}}}, 4000,
-             [](double x) {
-                 // Both the wide range and, folded, the octaves about 1 where the series alone speaks.
-                 const double folded = std::ldexp(std::frexp(x, std::array<int, 1>{}.data()), (static_cast<int>(std::bit_cast<std::uint64_t>(x) & 1u)));
-                 const auto scaled = [](double v) { const double e = log2Exact(v); return std::abs(oracle::log2Error(v, e)) / std::max(1.0, std::abs(e)); };
-                 return std::max(scaled(x), scaled(folded));
-             },
-             111);
-    addExact(run, {.function = "exp2Exact", .domain = "[-1000, 1000]", .boundName = "kExp2MaxError", .errorKind = "relative", .bound = kExp2MaxError},
-             {{{{-1000.0, 1000.0}}}, {{0.5}, {-0.5}, {0.0}, {1.5}, {-999.5}, {999.5}}}, 3000,
-             [](double x) { return std::abs(oracle::exp2RelativeError(x, exp2Exact(x))); }, 112);
-    addExact(run, {.function = "sinCos", .domain = "|angle| <= 1e6", .boundName = "kSinCosMaxError", .errorKind = "absolute", .bound = kSinCosMaxError},
-             {{{{1e-9, 1e6, Spacing::signedLogarithmic}}}, {{0.78539816339744831}, {1.5707963267948966}, {3.1415926535897932}, {1e6}, {999999.5}}}, 4000,
-             [](double x) {
-                 const SinCos sc = sinCos(x);
-                 return std::max(std::abs(oracle::sinError(x, sc.sin)), std::abs(oracle::cosError(x, sc.cos)));
-             },
-             113);
-    addExact(run, {.function = "arcTangent2", .domain = "y / x of 1e-9 .. 1e9, all quadrants", .boundName = "kArcTangentMaxError", .errorKind = "absolute",
-                   .bound = kArcTangentMaxError},
-             {{{{1e-9, 1e9, Spacing::signedLogarithmic}}}, {{1.0}, {-1.0}, {0.41421356237309503}}}, 4000,
-             [](double y) {
-                 const double x = (std::bit_cast<std::uint64_t>(y) & 1u) ? 1.0 : -1.0;
-                 return std::abs(oracle::arcTangent2Error(y, x, arcTangent2(y, x)));
-             },
-             114);
+    addExact(
+        run,
+        {.function = "log2Exact",
+         .domain = "2^-1000 .. 2^1000, and [1/2, 2]",
+         .boundName = "kLog2MaxError",
+         .errorKind = "absolute / max(1, |log2 x|)",
+         .bound = kLog2MaxError},
+        {{{{0x1p-1000, 0x1p1000, Spacing::logarithmic}}}, {{0.70710678118654752440}, {1.0}, {0.5}, {2.0}, {1.41421356237309504880}}}, 4000,
+        [](double x) {
+            // Both the wide range and, folded, the octaves about 1 where the series alone speaks.
+            const double folded = std::ldexp(std::frexp(x, std::array<int, 1>{}.data()), (static_cast<int>(std::bit_cast<std::uint64_t>(x) & 1u)));
+            const auto scaled = [](double v) {
+                const double e = log2Exact(v);
+                return std::abs(oracle::log2Error(v, e)) / std::max(1.0, std::abs(e));
+            };
+            return std::max(scaled(x), scaled(folded));
+        },
+        111);
+    addExact(
+        run, {.function = "exp2Exact", .domain = "[-1000, 1000]", .boundName = "kExp2MaxError", .errorKind = "relative", .bound = kExp2MaxError},
+        {{{{-1000.0, 1000.0}}}, {{0.5}, {-0.5}, {0.0}, {1.5}, {-999.5}, {999.5}}}, 3000,
+        [](double x) { return std::abs(oracle::exp2RelativeError(x, exp2Exact(x))); }, 112);
+    addExact(
+        run, {.function = "sinCos", .domain = "|angle| <= 1e6", .boundName = "kSinCosMaxError", .errorKind = "absolute", .bound = kSinCosMaxError},
+        {{{{1e-9, 1e6, Spacing::signedLogarithmic}}}, {{0.78539816339744831}, {1.5707963267948966}, {3.1415926535897932}, {1e6}, {999999.5}}}, 4000,
+        [](double x) {
+            const SinCos sc = sinCos(x);
+            return std::max(std::abs(oracle::sinError(x, sc.sin)), std::abs(oracle::cosError(x, sc.cos)));
+        },
+        113);
+    addExact(
+        run,
+        {.function = "arcTangent2",
+         .domain = "y / x of 1e-9 .. 1e9, all quadrants",
+         .boundName = "kArcTangentMaxError",
+         .errorKind = "absolute",
+         .bound = kArcTangentMaxError},
+        {{{{1e-9, 1e9, Spacing::signedLogarithmic}}}, {{1.0}, {-1.0}, {0.41421356237309503}}}, 4000,
+        [](double y) {
+            const double x = (std::bit_cast<std::uint64_t>(y) & 1u) ? 1.0 : -1.0;
+            return std::abs(oracle::arcTangent2Error(y, x, arcTangent2(y, x)));
+        },
+        114);
     const SearchSpace<double, 2> powers{{{{1e-6, 1e6, Spacing::logarithmic}, {-5.0, 5.0}}}, {{1.0, 2.4}, {0.5, 2.0}}};
-    const auto worst = findWorst(powers, run.budget(1500), [](const auto& in) { return std::abs(oracle::powerRelativeError(in[0], in[1], power(in[0], in[1]))); }, 115);
-    run.add({.equation = "base", .function = "power", .oracle = "50 digits (Boost.Multiprecision)", .domain = "1e-6 .. 1e6, exponents -5 .. 5",
-             .boundName = "kPowerMaxError", .errorKind = "relative", .bound = kPowerMaxError},
+    const auto worst = findWorst(
+        powers, run.budget(1500), [](const auto& in) { return std::abs(oracle::powerRelativeError(in[0], in[1], power(in[0], in[1]))); }, 115);
+    run.add({.equation = "base",
+             .function = "power",
+             .oracle = "50 digits (Boost.Multiprecision)",
+             .domain = "1e-6 .. 1e6, exponents -5 .. 5",
+             .boundName = "kPowerMaxError",
+             .errorKind = "relative",
+             .bound = kPowerMaxError},
             worst, inputText<double, 2>({"x", "y"}, worst.input));
 }
 

@@ -28,8 +28,13 @@ void checkPhi(CheckRun& run, GaussianMethod method, int tableSize, const char* b
     space.axes[0] = {-6.0f, 6.0f};  // where something happens
     worst.include(findWorst(space, {run.scaled(120000), run.scaled(120000)}, error, 302));
     worst.error = std::abs(oracle::phiError(double(worst.input[0]), double(phi(worst.input[0]))));
-    run.add({.equation = "12", .function = "NormalCdf, " + nameOf(method, tableSize), .oracle = "50-digit erfc (Boost.Multiprecision)",
-             .domain = "any x; searched in [-40, 40]", .boundName = boundName, .errorKind = "absolute", .bound = double(phi.maxError()),
+    run.add({.equation = "12",
+             .function = "NormalCdf, " + nameOf(method, tableSize),
+             .oracle = "50-digit erfc (Boost.Multiprecision)",
+             .domain = "any x; searched in [-40, 40]",
+             .boundName = boundName,
+             .errorKind = "absolute",
+             .bound = double(phi.maxError()),
              .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return phi(-6.0f + 12.0f * float(i) / 4096.0f); }) : 0.0},
             worst, inputText<float, 1>({"x"}, worst.input));
 }
@@ -43,20 +48,27 @@ void checkTableNodes(CheckRun& run)
         const NormalCdf phi(GaussianMethod::table, entries);
         SearchSpace<float, 1> space{{{{-5.5f, 5.5f}}}, {{-5.0f}, {5.0f}}};
         for (int i = 0; i < entries; ++i) space.planted.push_back({static_cast<float>(-5.0 + 10.0 * i / (entries - 1))});
-        const auto found = findWorst(space, run.budget(20000), [&](const std::array<float, 1>& in) {
-            const long double x = static_cast<long double>(in[0]), cell = 10.0L / (entries - 1);
-            long double expected = x <= -5.0L ? 0.0L : 1.0L;
-            if (x > -5.0L && x < 5.0L) {
-                const long double i = std::min(std::floor((x + 5.0L) / cell), static_cast<long double>(entries - 2)), left = -5.0L + i * cell;
-                expected = oracle::phi(left) + (x - left) / cell * (oracle::phi(left + cell) - oracle::phi(left));
-            }
-            return std::abs(static_cast<double>(static_cast<long double>(phi(in[0])) - expected));
-        }, 303);
+        const auto found = findWorst(
+            space, run.budget(20000),
+            [&](const std::array<float, 1>& in) {
+                const long double x = static_cast<long double>(in[0]), cell = 10.0L / (entries - 1);
+                long double expected = x <= -5.0L ? 0.0L : 1.0L;
+                if (x > -5.0L && x < 5.0L) {
+                    const long double i = std::min(std::floor((x + 5.0L) / cell), static_cast<long double>(entries - 2)), left = -5.0L + i * cell;
+                    expected = oracle::phi(left) + (x - left) / cell * (oracle::phi(left + cell) - oracle::phi(left));
+                }
+                return std::abs(static_cast<double>(static_cast<long double>(phi(in[0])) - expected));
+            },
+            303);
         if (found.error > worst.error) at = "entries = " + std::to_string(entries) + ", x = " + exactText(found.input[0]);
         worst.include(found);
     }
-    run.add({.equation = "12", .function = "NormalCdf, table, against its own straight lines", .oracle = "interpolation of erfc's values in long double",
-             .domain = "tables of 2 .. 4096 entries over [-5, 5], every node", .boundName = "kTableCdfRoundingError", .errorKind = "absolute",
+    run.add({.equation = "12",
+             .function = "NormalCdf, table, against its own straight lines",
+             .oracle = "interpolation of erfc's values in long double",
+             .domain = "tables of 2 .. 4096 entries over [-5, 5], every node",
+             .boundName = "kTableCdfRoundingError",
+             .errorKind = "absolute",
              .bound = double(kTableCdfRoundingError)},
             worst, at);
 }
@@ -64,15 +76,28 @@ void checkTableNodes(CheckRun& run)
 void checkExactDouble(CheckRun& run)
 {
     const SearchSpace<double, 1> space{{{{-38.5, 9.0}}}, {{2.5}, {-2.5}, {0.0}, {-8.0}}};
-    auto worst = findWorst(space, run.budget(4000), [](const auto& in) { return std::abs(oracle::phiError(in[0], normalCdfExact(in[0]))); }, 304);
-    run.add({.equation = "12", .function = "normalCdfExact", .oracle = "50-digit erfc (Boost.Multiprecision)", .domain = "any x; searched in [-38.5, 9]",
-             .boundName = "kExactDoubleCdfMaxError", .errorKind = "absolute", .bound = kExactDoubleCdfMaxError,
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(1024, [](std::size_t i) { return normalCdfExact(-6.0 + 12.0 * double(i) / 1024.0); }) : 0.0},
-            worst, inputText<double, 1>({"x"}, worst.input));
+    auto worst = findWorst(
+        space, run.budget(4000), [](const auto& in) { return std::abs(oracle::phiError(in[0], normalCdfExact(in[0]))); }, 304);
+    run.add(
+        {.equation = "12",
+         .function = "normalCdfExact",
+         .oracle = "50-digit erfc (Boost.Multiprecision)",
+         .domain = "any x; searched in [-38.5, 9]",
+         .boundName = "kExactDoubleCdfMaxError",
+         .errorKind = "absolute",
+         .bound = kExactDoubleCdfMaxError,
+         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(1024, [](std::size_t i) { return normalCdfExact(-6.0 + 12.0 * double(i) / 1024.0); }) : 0.0},
+        worst, inputText<double, 1>({"x"}, worst.input));
     const SearchSpace<double, 1> tail{{{{-37.0, 0.0}}}, {{-2.5}, {-37.0}}};
-    worst = findWorst(tail, run.budget(2500), [](const auto& in) { return std::abs(oracle::phiRelativeError(in[0], normalCdfExact(in[0]))); }, 305);
-    run.add({.equation = "12", .function = "normalCdfExact, lower tail", .oracle = "50-digit erfc (Boost.Multiprecision)", .domain = "[-37, 0]",
-             .boundName = "kExactDoubleCdfMaxRelativeError", .errorKind = "relative", .bound = kExactDoubleCdfMaxRelativeError},
+    worst = findWorst(
+        tail, run.budget(2500), [](const auto& in) { return std::abs(oracle::phiRelativeError(in[0], normalCdfExact(in[0]))); }, 305);
+    run.add({.equation = "12",
+             .function = "normalCdfExact, lower tail",
+             .oracle = "50-digit erfc (Boost.Multiprecision)",
+             .domain = "[-37, 0]",
+             .boundName = "kExactDoubleCdfMaxRelativeError",
+             .errorKind = "relative",
+             .bound = kExactDoubleCdfMaxRelativeError},
             worst, inputText<double, 1>({"x"}, worst.input));
 }
 
@@ -87,8 +112,9 @@ Window windowOf(const std::array<float, 4>& in)
 }
 SearchSpace<float, 4> windows()
 {
-    return {{{{0.0f, 1.0f}, {0x1p-24f, 1.0f, Spacing::logarithmic}, {-9.0f, 9.0f}, {0x1p-20f, 2.0f, Spacing::logarithmic}}},
-            {{0.5f, 0.005f, 0.0f, 0.25f}, {0.0f, 0.1f, -1.0f, 0.1f}, {1.0f, 0.2f, 5.0f, 1.0f}, {0.3f, 0x1p-20f, -5.25f, 0x1p-10f}, {0.7f, 1.0f, 0.0f, 0x1p-20f}}};
+    return {
+        {{{0.0f, 1.0f}, {0x1p-24f, 1.0f, Spacing::logarithmic}, {-9.0f, 9.0f}, {0x1p-20f, 2.0f, Spacing::logarithmic}}},
+        {{0.5f, 0.005f, 0.0f, 0.25f}, {0.0f, 0.1f, -1.0f, 0.1f}, {1.0f, 0.2f, 5.0f, 1.0f}, {0.3f, 0x1p-20f, -5.25f, 0x1p-10f}, {0.7f, 1.0f, 0.0f, 0x1p-20f}}};
 }
 double visibilityError(const NormalCdf& phi, const Window& w, float v)
 {
@@ -109,7 +135,8 @@ EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSiz
     const Window at = windowOf(worst.input);
     worst.error = std::abs(oracle::visibilityError(at.mu, at.sigma2, at.zc, at.rc, double(gaussianVisibility(phi, at.mu, at.sigma2, at.zc, at.rc))));
 
-    EquationTrade trade{.setting = "gaussian", .choice = nameOf(method, tableSize), .quantity = "V, Eq. 12", .bound = bound, .worst = worst.error, .meanError = worst.mean()};
+    EquationTrade trade{
+        .setting = "gaussian", .choice = nameOf(method, tableSize), .quantity = "V, Eq. 12", .bound = bound, .worst = worst.error, .meanError = worst.mean()};
     trade.bytes = method == GaussianMethod::table ? std::size_t(tableSize) * sizeof(float) : 0;
     // Bias and time over the windows that cones have: sigma and radius of like size.
     std::vector<Window> usual(4096);
@@ -117,14 +144,21 @@ EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSiz
     for (Window& w : usual) {
         const float sigma = random.uniform(0.005f, 0.2f), rc = random.uniform(0.01f, 0.3f);
         w = {random.uniform(0.2f, 0.8f), sigma * sigma, random.uniform(0.0f, 1.0f), rc};
-        trade.bias += (double(gaussianVisibility(phi, w.mu, w.sigma2, w.zc, w.rc)) - static_cast<double>(oracle::visibility(w.mu, w.sigma2, w.zc, w.rc))) / double(usual.size());
+        trade.bias += (double(gaussianVisibility(phi, w.mu, w.sigma2, w.zc, w.rc)) - static_cast<double>(oracle::visibility(w.mu, w.sigma2, w.zc, w.rc))) /
+                      double(usual.size());
     }
     if (run.measuresSpeed())
-        trade.nanoseconds = medianNanoseconds(usual.size(), [&](std::size_t i) { return gaussianVisibility(phi, usual[i].mu, usual[i].sigma2, usual[i].zc, usual[i].rc); });
+        trade.nanoseconds =
+            medianNanoseconds(usual.size(), [&](std::size_t i) { return gaussianVisibility(phi, usual[i].mu, usual[i].sigma2, usual[i].zc, usual[i].rc); });
     if (addRow)
-        run.add({.equation = "12", .function = "gaussianVisibility, " + trade.choice, .oracle = "50-digit erfc (Boost.Multiprecision)",
-                 .domain = "mu in [0, 1], sigma 2^-24 .. 1, r_c 2^-20 .. 2, an end of the window within 9 sigma of mu", .boundName = boundName,
-                 .errorKind = "absolute", .bound = bound, .nanoseconds = trade.nanoseconds},
+        run.add({.equation = "12",
+                 .function = "gaussianVisibility, " + trade.choice,
+                 .oracle = "50-digit erfc (Boost.Multiprecision)",
+                 .domain = "mu in [0, 1], sigma 2^-24 .. 1, r_c 2^-20 .. 2, an end of the window within 9 sigma of mu",
+                 .boundName = boundName,
+                 .errorKind = "absolute",
+                 .bound = bound,
+                 .nanoseconds = trade.nanoseconds},
                 worst, inputText<float, 4>({"mu", "sigma2", "zc", "rc"}, {at.mu, at.sigma2, at.zc, at.rc}));
     run.add(trade);
     return trade;
@@ -142,14 +176,20 @@ void checkStep(CheckRun& run)
         const float v = gaussianVisibility(phi, 0.5f, sigma2, zc, moveByUlps(0.25f, ulps));
         return v == (ulps < 0 ? 0.0f : ulps > 0 ? 1.0f : 0.5f) ? 0.0 : 1.0;
     });
-    run.add({.equation = "12", .function = "gaussianVisibility, variance <= 0", .oracle = "Heaviside, 1/2 on the edge", .domain = "r_c within 2 ULP of |z_c - mu|",
-             .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "12",
+             .function = "gaussianVisibility, variance <= 0",
+             .oracle = "Heaviside, 1/2 on the edge",
+             .domain = "r_c within 2 ULP of |z_c - mu|",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             wrong, "case " + exactText(wrong.input[0]));
 }
 
 void addCurves(CheckRun& run, const std::vector<EquationTrade>& tables)
 {
-    EquationCurve bySize{.equation = "12", .title = "Eq. 12 by table: error against size", .xLabel = "entries", .yLabel = "largest error of V", .logX = true, .logY = true};
+    EquationCurve bySize{
+        .equation = "12", .title = "Eq. 12 by table: error against size", .xLabel = "entries", .yLabel = "largest error of V", .logX = true, .logY = true};
     EquationSeries measured{.name = "measured"}, bound{.name = "bound"};
     for (const EquationTrade& trade : tables) {
         const double entries = double(trade.bytes) / sizeof(float);
@@ -160,7 +200,8 @@ void addCurves(CheckRun& run, const std::vector<EquationTrade>& tables)
     run.add(bySize);
 
     EquationCurve byX{.equation = "12", .title = "error of Phi against x", .xLabel = "x", .yLabel = "|error|", .logX = false, .logY = true};
-    const NormalCdf choices[4] = {NormalCdf(GaussianMethod::table, 64), NormalCdf(GaussianMethod::table, 1024), NormalCdf(GaussianMethod::polynomial), NormalCdf(GaussianMethod::exact)};
+    const NormalCdf choices[4] = {NormalCdf(GaussianMethod::table, 64), NormalCdf(GaussianMethod::table, 1024), NormalCdf(GaussianMethod::polynomial),
+                                  NormalCdf(GaussianMethod::exact)};
     const char* const names[4] = {"table(64)", "table(1024)", "polynomial", "exact"};
     for (int c = 0; c < 4; ++c) {
         EquationSeries series{.name = names[c]};

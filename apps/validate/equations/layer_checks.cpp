@@ -42,7 +42,8 @@ void checkPartition(CheckRun& run)
     std::string at, overlapAt;
     SearchRandom random(501);
     for (std::uint64_t draw = 0; draw < run.draws(600); ++draw) {
-        LayerSettings settings = layersOf(1 + static_cast<int>(random.word() % 16), 1 + static_cast<int>(random.word() % 8), random.word() % 4 ? random.uniform(0.0f, 0.5f) : 0.0f);
+        LayerSettings settings =
+            layersOf(1 + static_cast<int>(random.word() % 16), 1 + static_cast<int>(random.word() % 8), random.word() % 4 ? random.uniform(0.0f, 0.5f) : 0.0f);
         settings.fitRanges = random.word() % 4 != 0;
         settings.outermostDecay = random.word() % 3 == 0;
         const float a = random.uniform(0.0f, 1.0f), b = random.word() % 8 ? random.uniform(0.0f, 1.0f) : a;
@@ -60,10 +61,12 @@ void checkPartition(CheckRun& run)
             const int depth = static_cast<int>(i) / settings.normalLayers, normal = static_cast<int>(i) % settings.normalLayers;
             const bool first = depth == 0, last = depth == settings.depthLayers - 1;
             const double reach = settings.outermostDecay ? 0.0 : delta;
-            const double low = first ? nearest - reach : nearest + slice * depth - 0.5 * delta, high = last ? farthest + reach : nearest + slice * (depth + 1) + 0.5 * delta;
+            const double low = first ? nearest - reach : nearest + slice * depth - 0.5 * delta,
+                         high = last ? farthest + reach : nearest + slice * (depth + 1) + 0.5 * delta;
             const LayerRange& r = ranges[i];
             error = std::max({error, std::abs(double(r.depthMin) - low), std::abs(double(r.depthMax) - high), std::abs(double(r.delta) - delta),
-                              std::abs(double(r.nDotLMin) - double(normal) / settings.normalLayers), std::abs(double(r.nDotLMax) - double(normal + 1) / settings.normalLayers)});
+                              std::abs(double(r.nDotLMin) - double(normal) / settings.normalLayers),
+                              std::abs(double(r.nDotLMax) - double(normal + 1) / settings.normalLayers)});
             const bool decays = settings.outermostDecay && r.delta > 0.0f;
             if (r.decayAtMin != (!first || decays) || r.decayAtMax != (!last || decays)) error = 1.0;
             if (!last) {
@@ -73,11 +76,21 @@ void checkPartition(CheckRun& run)
         }
         include(worst, error, at, text(settings) + ", depths " + exactText(nearest) + " .. " + exactText(farthest));
     }
-    run.add({.equation = "13", .function = "partition, edges", .oracle = "equal slices of the map's depths in double", .domain = "1 .. 16 x 1 .. 8 layers, overlap 0 .. 0.5, depths fitted or not, flat maps",
-             .boundName = "kPartitionMaxError", .errorKind = "absolute, linear depth", .bound = double(kPartitionMaxError)},
+    run.add({.equation = "13",
+             .function = "partition, edges",
+             .oracle = "equal slices of the map's depths in double",
+             .domain = "1 .. 16 x 1 .. 8 layers, overlap 0 .. 0.5, depths fitted or not, flat maps",
+             .boundName = "kPartitionMaxError",
+             .errorKind = "absolute, linear depth",
+             .bound = double(kPartitionMaxError)},
             worst, at);
-    run.add({.equation = "15", .function = "partition, overlap is delta", .oracle = "zMax of one layer - zMin of the next, in double", .domain = "as above", .boundName = "exact",
-             .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "15",
+             .function = "partition, overlap is delta",
+             .oracle = "zMax of one layer - zMin of the next, in double",
+             .domain = "as above",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             overlaps, overlapAt);
 }
 
@@ -88,9 +101,15 @@ void checkFlatMap(CheckRun& run)
         const float depth = std::ldexp(1.0f, -6 - static_cast<int>(i));
         const auto ranges = partition(syntheticRsm(4, 505, 1.0f, depth, depth), layersOf(1, 1, 0.0f));
         const double width = double(ranges.front().depthMax) - double(ranges.front().depthMin);
-        return std::max(std::abs(width * 65536.0 - 1.0), std::abs(0.5 * (double(ranges.front().depthMax) + double(ranges.front().depthMin)) - double(depth)) * 65536.0);
+        return std::max(std::abs(width * 65536.0 - 1.0),
+                        std::abs(0.5 * (double(ranges.front().depthMax) + double(ranges.front().depthMin)) - double(depth)) * 65536.0);
     });
-    run.add({.equation = "13", .function = "partition, a map of one depth", .oracle = "2^-16 about it", .domain = "depths 2^-6 .. 2^-13", .boundName = "exact", .errorKind = "over 2^-16",
+    run.add({.equation = "13",
+             .function = "partition, a map of one depth",
+             .oracle = "2^-16 about it",
+             .domain = "depths 2^-6 .. 2^-13",
+             .boundName = "exact",
+             .errorKind = "over 2^-16",
              .bound = 0.0},
             worst, "depth = 2^(-6 - " + exactText(worst.input[0]) + ")");
 }
@@ -107,18 +126,30 @@ void checkDecay(CheckRun& run)
         return r;
     };
     // in[3]: where in the range, from just before it to just behind.
-    const SearchSpace<float, 4> space{{{{0.0f, 0.9f}, {1e-3f, 1.0f, Spacing::logarithmic}, {0.01f, 1.0f}, {-0.01f, 1.01f}}},
-                                      {{0.25f, 0.5f, 0.5f, 0.0f}, {0.25f, 0.5f, 0.5f, 1.0f}, {0.25f, 0.5f, 0.5f, 0.125f}, {0.25f, 0.5f, 0.5f, 0.875f}, {0.1f, 0.3f, 1.0f, 0.5f}}};
-    const auto worst = findWorst(space, run.budget(150000), [&](const auto& in) {
-        const LayerRange r = rangeOf(in);
-        const float z = r.depthMin + (r.depthMax - r.depthMin) * in[3];
-        return std::abs(double(decay(r, z)) - twin::decay(r, double(z)));
-    }, 511);
+    const SearchSpace<float, 4> space{
+        {{{0.0f, 0.9f}, {1e-3f, 1.0f, Spacing::logarithmic}, {0.01f, 1.0f}, {-0.01f, 1.01f}}},
+        {{0.25f, 0.5f, 0.5f, 0.0f}, {0.25f, 0.5f, 0.5f, 1.0f}, {0.25f, 0.5f, 0.5f, 0.125f}, {0.25f, 0.5f, 0.5f, 0.875f}, {0.1f, 0.3f, 1.0f, 0.5f}}};
+    const auto worst = findWorst(
+        space, run.budget(150000),
+        [&](const auto& in) {
+            const LayerRange r = rangeOf(in);
+            const float z = r.depthMin + (r.depthMax - r.depthMin) * in[3];
+            return std::abs(double(decay(r, z)) - twin::decay(r, double(z)));
+        },
+        511);
     const LayerRange r = rangeOf(worst.input);
-    run.add({.equation = "15", .function = "decay", .oracle = "smoothstep in double", .domain = "ranges of 1e-3 .. 1 in [0, 2], delta up to half of it, z_c in and beside it",
-             .boundName = "kDecayMaxError", .errorKind = "absolute", .bound = double(kDecayMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); }) : 0.0},
-            worst, inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, r.depthMin + (r.depthMax - r.depthMin) * worst.input[3]}));
+    run.add({.equation = "15",
+             .function = "decay",
+             .oracle = "smoothstep in double",
+             .domain = "ranges of 1e-3 .. 1 in [0, 2], delta up to half of it, z_c in and beside it",
+             .boundName = "kDecayMaxError",
+             .errorKind = "absolute",
+             .bound = double(kDecayMaxError),
+             .nanoseconds = run.measuresSpeed()
+                                ? medianNanoseconds(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); })
+                                : 0.0},
+            worst,
+            inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, r.depthMin + (r.depthMax - r.depthMin) * worst.input[3]}));
 
     // The ends that do not decay: 1 up to and with the last float, 0 beyond; half-open where a neighbour begins.
     const auto ends = exhaust(4 * 5 * 2, [](std::uint64_t i) {
@@ -131,8 +162,13 @@ void checkDecay(CheckRun& run)
         const bool inside = atMax ? ulps < 0 || (ulps == 0 && !e.decayAtMax) : ulps >= 0;
         return decay(e, z) == (inside ? 1.0f : 0.0f) ? 0.0 : 1.0;
     });
-    run.add({.equation = "15", .function = "decay, ends without overlap", .oracle = "half-open intervals, the last one closed", .domain = "z_c within 2 ULP of either end",
-             .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "15",
+             .function = "decay, ends without overlap",
+             .oracle = "half-open intervals, the last one closed",
+             .domain = "z_c within 2 ULP of either end",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             ends, "case " + exactText(ends.input[0]));
 }
 
@@ -153,16 +189,24 @@ void checkDecaySum(CheckRun& run)
         SearchSpace<float, 1> space{{{{nearest, farthest}}}, {{nearest}, {farthest}}};
         for (const LayerRange& r : ranges)
             for (const float edge : {r.depthMin, r.depthMax, r.depthMin + r.delta, r.depthMax - r.delta}) space.planted.push_back({edge});
-        const auto found = findWorst(space, run.budget(1500), [&](const auto& in) {
-            double sum = 0.0;
-            for (const LayerRange& r : ranges) sum += double(decay(r, in[0]));
-            return std::abs(sum - 1.0);
-        }, 523);
+        const auto found = findWorst(
+            space, run.budget(1500),
+            [&](const auto& in) {
+                double sum = 0.0;
+                for (const LayerRange& r : ranges) sum += double(decay(r, in[0]));
+                return std::abs(sum - 1.0);
+            },
+            523);
         if (found.error > worst.error) at = text(settings) + ", draw " + std::to_string(draw) + ", z_c = " + exactText(found.input[0]);
         worst.include(found);
     }
-    run.add({.equation = "15", .function = "decay, sum over the layers", .oracle = "1", .domain = "1 .. 16 depth layers, overlap 0 .. 0.5, every depth of the map",
-             .boundName = "kDecaySumMaxError", .errorKind = "absolute", .bound = double(kDecaySumMaxError)},
+    run.add({.equation = "15",
+             .function = "decay, sum over the layers",
+             .oracle = "1",
+             .domain = "1 .. 16 depth layers, overlap 0 .. 0.5, every depth of the map",
+             .boundName = "kDecaySumMaxError",
+             .errorKind = "absolute",
+             .bound = double(kDecaySumMaxError)},
             worst, at);
 }
 
@@ -255,12 +299,21 @@ void checkMeans(CheckRun& run)
         include(energy, alpha == covered / texels ? std::abs(sum - whole / texels) / (whole / texels) : 1.0, energyAt, text(settings));
     }
     for (Row& row : rows)
-        run.add({.equation = row.equation, .function = row.function, .oracle = "sums over the RSM's texels in double, membership as printed",
-                 .domain = "random maps of 64^2 and 128^2, 1 .. 5 x 1 .. 4 layers, with and without overlap", .boundName = row.boundName,
-                 .errorKind = row.equation == std::string("6") ? "relative to the largest radiance" : "absolute", .bound = row.bound},
+        run.add({.equation = row.equation,
+                 .function = row.function,
+                 .oracle = "sums over the RSM's texels in double, membership as printed",
+                 .domain = "random maps of 64^2 and 128^2, 1 .. 5 x 1 .. 4 layers, with and without overlap",
+                 .boundName = row.boundName,
+                 .errorKind = row.equation == std::string("6") ? "relative to the largest radiance" : "absolute",
+                 .bound = row.bound},
                 row.worst, row.at);
-    run.add({.equation = "14", .function = "buildLrsm, A R summed over the layers at the top level", .oracle = "the RSM's mean in double", .domain = "as above, without overlap",
-             .boundName = "kLayerSumMaxError", .errorKind = "relative", .bound = double(kLayerSumMaxError)},
+    run.add({.equation = "14",
+             .function = "buildLrsm, A R summed over the layers at the top level",
+             .oracle = "the RSM's mean in double",
+             .domain = "as above, without overlap",
+             .boundName = "kLayerSumMaxError",
+             .errorKind = "relative",
+             .bound = double(kLayerSumMaxError)},
             energy, energyAt);
 }
 
@@ -278,7 +331,9 @@ void checkStorage(CheckRun& run)
             if (lod == 0) return;
             const int n = lrsm.resolutionAt(lod - 1);
             const LrsmTexel* child = lrsm.level(layer, lod - 1) + (2 * y) * n + 2 * x;
-            const auto mean = [&](auto part, int c) { return 0.25f * (((child[0].*part)[c] + (child[1].*part)[c]) + ((child[n].*part)[c] + (child[n + 1].*part)[c])); };
+            const auto mean = [&](auto part, int c) {
+                return 0.25f * (((child[0].*part)[c] + (child[1].*part)[c]) + ((child[n].*part)[c] + (child[n + 1].*part)[c]));
+            };
             double bad = 0.0;
             for (int c = 0; c < 4; ++c) {
                 if (c < 3 && double(t.radiance[c]) != oracle::half(double(mean(&LrsmTexel::radiance, c)), rounding)) bad = 1.0;
@@ -287,9 +342,13 @@ void checkStorage(CheckRun& run)
             }
             include(wrong, bad, at, bad > wrong.error ? texelText(settings, layer, lod, x, y) : std::string());
         });
-        run.add({.equation = "table1", .function = std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
-                 .oracle = "conversions in double of the float mean of the stored children", .domain = "a random map of 128^2, 2 x 2 layers, all levels",
-                 .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+        run.add({.equation = "table1",
+                 .function = std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
+                 .oracle = "conversions in double of the float mean of the stored children",
+                 .domain = "a random map of 128^2, 2 x 2 layers, all levels",
+                 .boundName = "exact",
+                 .errorKind = "wrong results",
+                 .bound = 0.0},
                 wrong, at);
     }
 }

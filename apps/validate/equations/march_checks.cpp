@@ -144,17 +144,22 @@ void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>
                         : marchPaper(world.view(), sampler, aim.ray, schedule, scratch, counts, recorder);
         };
         const SearchSpace<float, 5> space{{{{0.5f, 5.0f}, {-4.0f, 4.0f}, {0.2f, 1.0f}, {0.0f, 6.2831853f}, {0.02f, 0.6f}}}, {}};
-        const auto found = findWorst(space, run.budget(2500), [&](const auto& in) {
-            const Aim aim = aimOf(in);
-            const MarchSchedule schedule = makeSchedule(world.settings, aim.tanHalf, reach);
-            const twin::March exact = slab ? twin::marchSlab(world.view(), world.field, aim.ray, schedule) : twin::marchPaper(world.view(), world.field, aim.ray, schedule);
-            if (exact.toJump < 1e-5) return -1.0;
-            const ConeResult got = kernel(aim, schedule);
-            double error = std::abs(double(got.opacity) - exact.opacity);
-            for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(double(got.radiance[k]) - exact.radiance[k]) / kLargestRadiance);
-            return error;
-        }, 710 + static_cast<std::uint32_t>(index) + (slab ? 20u : 0u));
-        if (found.error > worst.error) at = "case " + std::to_string(index) + ", " + inputText<float, 5>({"height", "x", "cosine", "azimuth", "tanHalf"}, found.input);
+        const auto found = findWorst(
+            space, run.budget(2500),
+            [&](const auto& in) {
+                const Aim aim = aimOf(in);
+                const MarchSchedule schedule = makeSchedule(world.settings, aim.tanHalf, reach);
+                const twin::March exact =
+                    slab ? twin::marchSlab(world.view(), world.field, aim.ray, schedule) : twin::marchPaper(world.view(), world.field, aim.ray, schedule);
+                if (exact.toJump < 1e-5) return -1.0;
+                const ConeResult got = kernel(aim, schedule);
+                double error = std::abs(double(got.opacity) - exact.opacity);
+                for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(double(got.radiance[k]) - exact.radiance[k]) / kLargestRadiance);
+                return error;
+            },
+            710 + static_cast<std::uint32_t>(index) + (slab ? 20u : 0u));
+        if (found.error > worst.error)
+            at = "case " + std::to_string(index) + ", " + inputText<float, 5>({"height", "x", "cosine", "azimuth", "tanHalf"}, found.input);
         worst.include(found);
         if (index == 0 && run.measuresSpeed()) {
             const MarchSchedule schedule = makeSchedule(world.settings, 0.3f, reach);
@@ -162,8 +167,14 @@ void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>
         }
         ++index;
     }
-    run.add({.equation = "1", .function = row.function, .oracle = slab ? "segments and emission integral in double (docs/pipeline.md)" : "the printed sum in double",
-             .domain = row.domain, .boundName = row.boundName, .errorKind = "absolute opacity; radiance relative to the largest", .bound = row.bound, .nanoseconds = nanoseconds},
+    run.add({.equation = "1",
+             .function = row.function,
+             .oracle = slab ? "segments and emission integral in double (docs/pipeline.md)" : "the printed sum in double",
+             .domain = row.domain,
+             .boundName = row.boundName,
+             .errorKind = "absolute opacity; radiance relative to the largest",
+             .bound = row.bound,
+             .nanoseconds = nanoseconds},
             worst, at);
 }
 
@@ -171,34 +182,59 @@ void checkStepOpacity(CheckRun& run)
 {
     ConeSettings settings;
     settings.opacity = OpacityModel::density;
-    const SearchSpace<float, 3> space{{{{1e-6f, 1.5f, Spacing::logarithmic}, {0.01f, 64.0f, Spacing::logarithmic}, {0.25f, 4.0f}}}, {{1.0f, 1.0f, 2.0f}, {0.5f, 1.0f, 1.0f}, {0.99999994f, 0.1f, 1.0f}}};
-    const auto worst = findWorst(space, run.budget(150000), [&](const auto& in) {
-        ConeSettings s = settings;
-        s.densityK = in[2];
-        const double error = std::abs(double(stepOpacity(in[0], in[1], s)) - twin::stepOpacity(double(in[0]), double(in[1]), s));
-        return error / std::max(1.0, double(in[1]) * double(in[2]) / 16.0);  // 1 - a has been rounded to float
-    }, 741);
-    run.add({.equation = "1", .function = "stepOpacity", .oracle = "1 - (1 - a)^(k length) by pow in double", .domain = "a 1e-6 .. 1.5, length 0.01 .. 64, k 0.25 .. 4",
-             .boundName = "kStepOpacityMaxError", .errorKind = "absolute / max(1, k length / 16)", .bound = double(kStepOpacityMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return stepOpacity(float(i) / 8192.0f, 0.5f, settings); }) : 0.0},
-            worst, inputText<float, 3>({"a", "length", "k"}, worst.input));
+    const SearchSpace<float, 3> space{{{{1e-6f, 1.5f, Spacing::logarithmic}, {0.01f, 64.0f, Spacing::logarithmic}, {0.25f, 4.0f}}},
+                                      {{1.0f, 1.0f, 2.0f}, {0.5f, 1.0f, 1.0f}, {0.99999994f, 0.1f, 1.0f}}};
+    const auto worst = findWorst(
+        space, run.budget(150000),
+        [&](const auto& in) {
+            ConeSettings s = settings;
+            s.densityK = in[2];
+            const double error = std::abs(double(stepOpacity(in[0], in[1], s)) - twin::stepOpacity(double(in[0]), double(in[1]), s));
+            return error / std::max(1.0, double(in[1]) * double(in[2]) / 16.0);  // 1 - a has been rounded to float
+        },
+        741);
+    run.add(
+        {.equation = "1",
+         .function = "stepOpacity",
+         .oracle = "1 - (1 - a)^(k length) by pow in double",
+         .domain = "a 1e-6 .. 1.5, length 0.01 .. 64, k 0.25 .. 4",
+         .boundName = "kStepOpacityMaxError",
+         .errorKind = "absolute / max(1, k length / 16)",
+         .bound = double(kStepOpacityMaxError),
+         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return stepOpacity(float(i) / 8192.0f, 0.5f, settings); }) : 0.0},
+        worst, inputText<float, 3>({"a", "length", "k"}, worst.input));
     settings.opacity = OpacityModel::none;
-    const auto plain = exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
-    run.add({.equation = "1", .function = "stepOpacity, opacity = none", .oracle = "min(a, 1)", .domain = "a 0 .. 1.5", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0}, plain,
-            "i = " + exactText(plain.input[0]));
+    const auto plain =
+        exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
+    run.add({.equation = "1",
+             .function = "stepOpacity, opacity = none",
+             .oracle = "min(a, 1)",
+             .domain = "a 0 .. 1.5",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
+            plain, "i = " + exactText(plain.input[0]));
 
     ConeSettings exponential;
     exponential.transmittance = TransmittanceModel::exponential;
     const SearchSpace<float, 2> depths{{{{0.0f, 20.0f}, {0.25f, 4.0f}}}, {{0.0f, 1.0f}, {1.0f, 1.0f}}};
-    const auto lost = findWorst(depths, run.budget(100000), [&](const auto& in) {
-        ConeSettings s = exponential, linear = exponential;
-        s.densityK = in[1];
-        linear.transmittance = TransmittanceModel::linear;
-        return std::max(std::abs(double(transmittanceOf(in[0], s)) - twin::transmittance(double(in[0]), s)),
-                        std::abs(double(transmittanceOf(in[0], linear)) - twin::transmittance(double(in[0]), linear)));
-    }, 742);
-    run.add({.equation = "1", .function = "transmittanceOf", .oracle = "exp(-k F), max(0, 1 - F) in double", .domain = "F 0 .. 20, k 0.25 .. 4", .boundName = "kTransmittanceMaxError",
-             .errorKind = "absolute", .bound = double(kTransmittanceMaxError)},
+    const auto lost = findWorst(
+        depths, run.budget(100000),
+        [&](const auto& in) {
+            ConeSettings s = exponential, linear = exponential;
+            s.densityK = in[1];
+            linear.transmittance = TransmittanceModel::linear;
+            return std::max(std::abs(double(transmittanceOf(in[0], s)) - twin::transmittance(double(in[0]), s)),
+                            std::abs(double(transmittanceOf(in[0], linear)) - twin::transmittance(double(in[0]), linear)));
+        },
+        742);
+    run.add({.equation = "1",
+             .function = "transmittanceOf",
+             .oracle = "exp(-k F), max(0, 1 - F) in double",
+             .domain = "F 0 .. 20, k 0.25 .. 4",
+             .boundName = "kTransmittanceMaxError",
+             .errorKind = "absolute",
+             .bound = double(kTransmittanceMaxError)},
             lost, inputText<float, 2>({"F", "k"}, lost.input));
 }
 
@@ -208,7 +244,8 @@ void checkSchedule(CheckRun& run)
     Worst<float, 4> levels, places;
     std::string levelAt, placeAt;
     for (const bool slab : {false, true}) {
-        const SearchSpace<float, 4> space{{{{0.01f, 2.0f, Spacing::logarithmic}, {0.1f, 1.0f}, {-3.0f, 1.0f}, {0.5f, 4.0f}}}, {{0.57735026f, 0.5f, 0.0f, 1.0f}}};
+        const SearchSpace<float, 4> space{{{{0.01f, 2.0f, Spacing::logarithmic}, {0.1f, 1.0f}, {-3.0f, 1.0f}, {0.5f, 4.0f}}},
+                                          {{0.57735026f, 0.5f, 0.0f, 1.0f}}};
         const auto settingsOf = [slab](const std::array<float, 4>& in) {
             ConeSettings s;
             s.estimator = slab ? Estimator::slab : Estimator::paper;
@@ -217,46 +254,62 @@ void checkSchedule(CheckRun& run)
             s.maxSteps = 100000;
             return s;
         };
-        const auto level = findWorst(space, run.budget(400), [&](const auto& in) {
-            double worst = 0.0;
-            for (const MarchStep& s : makeSchedule(settingsOf(in), in[0], 500.0f).steps) {
-                const double exact = std::max(0.0, std::log2(double(s.diameter)) + double(in[2]));
-                worst = std::max({worst, std::abs(double(s.level) - exact), std::abs(double(s.tapWidth) / std::exp2(exact) - 1.0)});
-            }
-            return worst;
-        }, 751);
+        const auto level = findWorst(
+            space, run.budget(400),
+            [&](const auto& in) {
+                double worst = 0.0;
+                for (const MarchStep& s : makeSchedule(settingsOf(in), in[0], 500.0f).steps) {
+                    const double exact = std::max(0.0, std::log2(double(s.diameter)) + double(in[2]));
+                    worst = std::max({worst, std::abs(double(s.level) - exact), std::abs(double(s.tapWidth) / std::exp2(exact) - 1.0)});
+                }
+                return worst;
+            },
+            751);
         if (level.error > levels.error) levelAt = inputText<float, 4>({"tanHalf", "step", "bias", "start"}, level.input);
         levels.include(level);
-        const auto place = findWorst(space, run.budget(400), [&](const auto& in) {
-            const ConeSettings settings = settingsOf(in);
-            const auto diameterAt = [&](double t) { return std::max(1.0, 2.0 * t * double(in[0])); };
-            double t = double(in[3]), worst = 0.0;
-            const MarchSchedule schedule = makeSchedule(settings, in[0], 500.0f);
-            std::size_t i = 0;
-            if (slab) {
-                const MarchStep& first = schedule.steps.at(i++);
-                if (first.begin != 0.0f || first.end != in[3] || first.middle != 0.5f * in[3] || first.readVoxels) return 1.0;
-            }
-            for (; i < schedule.steps.size(); ++i) {
-                const MarchStep& s = schedule.steps[i];
-                const double step = double(in[1]) * diameterAt(t), middle = slab ? t + 0.5 * step : t;
-                // Roundings add up from step to step.
-                const double error = std::max({std::abs(double(s.begin) / t - 1.0), std::abs(double(s.end) / (t + step) - 1.0), std::abs(double(s.middle) / middle - 1.0),
-                                               std::abs(double(s.diameter) / diameterAt(middle) - 1.0)});
-                worst = std::max(worst, error / double(i + 2));
-                if (!s.readVoxels) return 1.0;
-                t += step;
-            }
-            return t < 499.0 || t > 500.0 + 2.0 * diameterAt(500.0) ? 1.0 : worst;
-        }, 752);
+        const auto place = findWorst(
+            space, run.budget(400),
+            [&](const auto& in) {
+                const ConeSettings settings = settingsOf(in);
+                const auto diameterAt = [&](double t) { return std::max(1.0, 2.0 * t * double(in[0])); };
+                double t = double(in[3]), worst = 0.0;
+                const MarchSchedule schedule = makeSchedule(settings, in[0], 500.0f);
+                std::size_t i = 0;
+                if (slab) {
+                    const MarchStep& first = schedule.steps.at(i++);
+                    if (first.begin != 0.0f || first.end != in[3] || first.middle != 0.5f * in[3] || first.readVoxels) return 1.0;
+                }
+                for (; i < schedule.steps.size(); ++i) {
+                    const MarchStep& s = schedule.steps[i];
+                    const double step = double(in[1]) * diameterAt(t), middle = slab ? t + 0.5 * step : t;
+                    // Roundings add up from step to step.
+                    const double error = std::max({std::abs(double(s.begin) / t - 1.0), std::abs(double(s.end) / (t + step) - 1.0),
+                                                   std::abs(double(s.middle) / middle - 1.0), std::abs(double(s.diameter) / diameterAt(middle) - 1.0)});
+                    worst = std::max(worst, error / double(i + 2));
+                    if (!s.readVoxels) return 1.0;
+                    t += step;
+                }
+                return t < 499.0 || t > 500.0 + 2.0 * diameterAt(500.0) ? 1.0 : worst;
+            },
+            752);
         if (place.error > places.error) placeAt = inputText<float, 4>({"tanHalf", "step", "bias", "start"}, place.input);
         places.include(place);
     }
-    run.add({.equation = "1", .function = "makeSchedule, mip level and tap width", .oracle = "log2 and exp2 in double", .domain = "tan of the half angle 0.01 .. 2, to 500 voxels",
-             .boundName = "kVoxelLevelMaxError", .errorKind = "levels; relative width", .bound = double(kVoxelLevelMaxError)},
+    run.add({.equation = "1",
+             .function = "makeSchedule, mip level and tap width",
+             .oracle = "log2 and exp2 in double",
+             .domain = "tan of the half angle 0.01 .. 2, to 500 voxels",
+             .boundName = "kVoxelLevelMaxError",
+             .errorKind = "levels; relative width",
+             .bound = double(kVoxelLevelMaxError)},
             levels, levelAt);
-    run.add({.equation = "1", .function = "makeSchedule, places and diameters", .oracle = "the recurrence in double", .domain = "as above, steps 0.1 .. 1 of the diameter",
-             .boundName = "kSchedulePlaceMaxError", .errorKind = "relative / number of steps", .bound = double(kSchedulePlaceMaxError)},
+    run.add({.equation = "1",
+             .function = "makeSchedule, places and diameters",
+             .oracle = "the recurrence in double",
+             .domain = "as above, steps 0.1 .. 1 of the diameter",
+             .boundName = "kSchedulePlaceMaxError",
+             .errorKind = "relative / number of steps",
+             .bound = double(kSchedulePlaceMaxError)},
             places, placeAt);
 }
 
@@ -269,7 +322,9 @@ void checkCones(CheckRun& run)
     checkMarch(run, Estimator::slab, casesOf(Estimator::slab), {"marchSlab", domain, "kMarchSlabMaxError", double(kMarchSlabMaxError)});
     MarchCase wide = casesOf(Estimator::slab).front();
     wide.fitRanges = false;
-    checkMarch(run, Estimator::slab, {wide}, {"marchSlab, one layer over 20 m", "as above; taps of 0.25 m and up: an 80th of the layer", "kMarchSlabWideMaxError", double(kMarchSlabWideMaxError)});
+    checkMarch(
+        run, Estimator::slab, {wide},
+        {"marchSlab, one layer over 20 m", "as above; taps of 0.25 m and up: an 80th of the layer", "kMarchSlabWideMaxError", double(kMarchSlabWideMaxError)});
     checkStepOpacity(run);
     checkSchedule(run);
 }

@@ -47,7 +47,8 @@ double opticalDepth(const std::vector<Segment>& segments, const std::vector<doub
 {
     double before = 0.0;
     for (std::size_t i = 0; i < atEnd.size(); ++i) {
-        if (t <= segments[i].end) return t <= segments[i].begin ? before : before + (atEnd[i] - before) * (t - segments[i].begin) / (segments[i].end - segments[i].begin);
+        if (t <= segments[i].end)
+            return t <= segments[i].begin ? before : before + (atEnd[i] - before) * (t - segments[i].begin) / (segments[i].end - segments[i].begin);
         before = atEnd[i];
     }
     return before;
@@ -176,7 +177,8 @@ March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay
         }
         depth += density * (s.end - s.begin);
         depths.push_back(depth);
-        for (const Lrsm& lrsm : world.lrsms) result.radiance += emission(world, lrsm, ray, DVec3(ray.originWorld) + offset * voxel, segments, depths, result.toJump);
+        for (const Lrsm& lrsm : world.lrsms)
+            result.radiance += emission(world, lrsm, ray, DVec3(ray.originWorld) + offset * voxel, segments, depths, result.toJump);
 
         const double left = transmittance(opticalDepth(segments, depths, s.begin - 3.0 * s.width - 2.0), settings);
         result.toJump = std::min(result.toJump, std::abs(left - double(settings.transmittanceCutoff)));

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "conetrace/lrsm/march.h"
 #include "apps/validate/equations/algorithm1_twin.h"
+#include "conetrace/lrsm/march.h"
 
 /// Eq. 1 once more, in double: the paper's sum over spheres, and the slab estimator as docs/pipeline.md describes it. They share the structures of
 /// settings and maps with the kernels, and no code; constants are written here a second time.

@@ -54,33 +54,52 @@ void checkFootprint(CheckRun& run)
             const float u = cell / float(512 >> lod);
             space.planted.insert(space.planted.end(), {{u, 0.3f, float(lod)}, {1.0f - u, u, float(lod)}, {u, 1.0f - u, float(lod) + 0.5f}});
         }
-    const auto exact = findWorst(space, run.budget(60000), [&](const auto& in) { return footprintError(lrsm, in[0], in[1], in[2], FilterFraction::exact); }, 407);
-    run.add({.equation = "9", .function = "makeFootprint, exact fractions", .oracle = "tents about texel centres and levels, in double",
-             .domain = "maps of 512 .. 1 texels, u, v in [-0.01, 1.01], level -1 .. 10.5", .boundName = "kFootprintWeightMaxError", .errorKind = "absolute, of a weight",
+    const auto exact = findWorst(
+        space, run.budget(60000), [&](const auto& in) { return footprintError(lrsm, in[0], in[1], in[2], FilterFraction::exact); }, 407);
+    run.add({.equation = "9",
+             .function = "makeFootprint, exact fractions",
+             .oracle = "tents about texel centres and levels, in double",
+             .domain = "maps of 512 .. 1 texels, u, v in [-0.01, 1.01], level -1 .. 10.5",
+             .boundName = "kFootprintWeightMaxError",
+             .errorKind = "absolute, of a weight",
              .bound = double(kFootprintWeightMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return makeFootprint(lrsm, float(i) / 4096.0f, 0.4f, 2.5f, FilterFraction::exact).weight[0]; }) : 0.0},
+             .nanoseconds = run.measuresSpeed()
+                                ? medianNanoseconds(
+                                      4096, [&](std::size_t i) { return makeFootprint(lrsm, float(i) / 4096.0f, 0.4f, 2.5f, FilterFraction::exact).weight[0]; })
+                                : 0.0},
             exact, inputText<float, 3>({"u", "v", "level"}, exact.input));
 
     // Fractions in 1/256: on that lattice the weights are exact products; off it, they are those of a lattice point within half a step.
     const SearchSpace<float, 3> lattice{{{{0.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 9.0f}}}, {{0.5f, 0.5f, 0.5f}}};
-    const auto snapped = findWorst(lattice, run.budget(30000), [&](const std::array<float, 3>& in) {
-        const int lod = static_cast<int>(in[2]), n = 512 >> lod;
-        const float u = std::floor(in[0] * float(n) * 256.0f) / (256.0f * float(n)), v = std::floor(in[1] * float(n) * 256.0f) / (256.0f * float(n));
-        double worst = footprintError(lrsm, u, v, float(lod), FilterFraction::fixed8);
-        // Less than half a step aside changes nothing: the fraction is rounded to the nearest.
-        const LrsmFootprint on = makeFootprint(lrsm, u, v, float(lod), FilterFraction::fixed8);
-        for (const float aside : {-0.33f, n <= 64 ? 0.497f : 0.33f}) {
-            const LrsmFootprint beside = makeFootprint(lrsm, u + aside / (256.0f * float(n)), v + aside / (256.0f * float(n)), float(lod), FilterFraction::fixed8);
-            for (int tap = 0; tap < 4; ++tap) worst = std::max(worst, beside.texel[tap] != on.texel[tap] ? 1.0 : std::abs(double(on.weight[tap]) - double(beside.weight[tap])));
-        }
-        // The level's own fraction.
-        const float level = std::floor(in[2] * 256.0f) / 256.0f;
-        const LrsmFootprint atLevel = makeFootprint(lrsm, 0.4f, 0.6f, level, FilterFraction::fixed8), nearLevel = makeFootprint(lrsm, 0.4f, 0.6f, level + 0.497f / 256.0f, FilterFraction::fixed8);
-        for (int tap = 0; tap < atLevel.taps; ++tap) worst = std::max(worst, std::abs(double(atLevel.weight[tap]) - double(nearLevel.weight[tap])));
-        return std::max(worst, footprintError(lrsm, (std::floor(u * 8.0f) + 0.5f) / 8.0f, 0.5f, std::min(level, 9.0f), FilterFraction::fixed8));
-    }, 408);
-    run.add({.equation = "9", .function = "makeFootprint, fractions in 1/256", .oracle = "tents on the lattice of 1/256 texel, in double",
-             .domain = "lattice points of maps of 512 .. 1 texels, and up to 0.497 of a step beside them", .boundName = "exact", .errorKind = "absolute, of a weight", .bound = 0.0},
+    const auto snapped = findWorst(
+        lattice, run.budget(30000),
+        [&](const std::array<float, 3>& in) {
+            const int lod = static_cast<int>(in[2]), n = 512 >> lod;
+            const float u = std::floor(in[0] * float(n) * 256.0f) / (256.0f * float(n)), v = std::floor(in[1] * float(n) * 256.0f) / (256.0f * float(n));
+            double worst = footprintError(lrsm, u, v, float(lod), FilterFraction::fixed8);
+            // Less than half a step aside changes nothing: the fraction is rounded to the nearest.
+            const LrsmFootprint on = makeFootprint(lrsm, u, v, float(lod), FilterFraction::fixed8);
+            for (const float aside : {-0.33f, n <= 64 ? 0.497f : 0.33f}) {
+                const LrsmFootprint beside =
+                    makeFootprint(lrsm, u + aside / (256.0f * float(n)), v + aside / (256.0f * float(n)), float(lod), FilterFraction::fixed8);
+                for (int tap = 0; tap < 4; ++tap)
+                    worst = std::max(worst, beside.texel[tap] != on.texel[tap] ? 1.0 : std::abs(double(on.weight[tap]) - double(beside.weight[tap])));
+            }
+            // The level's own fraction.
+            const float level = std::floor(in[2] * 256.0f) / 256.0f;
+            const LrsmFootprint atLevel = makeFootprint(lrsm, 0.4f, 0.6f, level, FilterFraction::fixed8),
+                                nearLevel = makeFootprint(lrsm, 0.4f, 0.6f, level + 0.497f / 256.0f, FilterFraction::fixed8);
+            for (int tap = 0; tap < atLevel.taps; ++tap) worst = std::max(worst, std::abs(double(atLevel.weight[tap]) - double(nearLevel.weight[tap])));
+            return std::max(worst, footprintError(lrsm, (std::floor(u * 8.0f) + 0.5f) / 8.0f, 0.5f, std::min(level, 9.0f), FilterFraction::fixed8));
+        },
+        408);
+    run.add({.equation = "9",
+             .function = "makeFootprint, fractions in 1/256",
+             .oracle = "tents on the lattice of 1/256 texel, in double",
+             .domain = "lattice points of maps of 512 .. 1 texels, and up to 0.497 of a step beside them",
+             .boundName = "exact",
+             .errorKind = "absolute, of a weight",
+             .bound = 0.0},
             snapped, inputText<float, 3>({"u", "v", "level"}, snapped.input));
 }
 
@@ -129,24 +148,34 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
             const float sine = std::sqrt(std::max(0.0f, 1.0f - in[4] * in[4]));
             return ConeSample{Vec3(in[0], in[1], in[2]), in[3], Vec3(sine * std::cos(in[5]), sine * std::sin(in[5]), in[4])};
         };
-        const SearchSpace<float, 6> space{{{{-2.3f, 2.3f}, {-2.0f, 2.0f}, {-2.3f, 2.3f}, {0.01f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {0.0f, 6.2831853f}}}, {}};
-        const auto found = findWorst(space, run.budget(20000), [&](const auto& in) {
-            const ConeSample cone = coneOf(in);
-            const LightSpacePoint p = projectToLight(lrsm.projection, cone.centre);
-            const twin::Outgoing exact = twin::algorithm1(lrsm, {double(p.u), double(p.v), double(p.depth), double(p.texelSize), p.valid}, cone, choice.cones);
-            if (exact.toJump < 1e-5) return -1.0;
-            const Vec3 got = sampleLrsm(lrsm, cone, choice.cones, phi);
-            double error = 0.0;
-            for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(double(got[c]) - exact.radiance[c]) / kSyntheticRadiance);
-            return error;
-        }, 421 + static_cast<std::uint32_t>(index));
-        if (found.error > worst.error) at = "choice " + std::to_string(index) + ", " + inputText<float, 6>({"x", "y", "z", "radius", "v.z", "azimuth"}, found.input);
+        const SearchSpace<float, 6> space{
+            {{{-2.3f, 2.3f}, {-2.0f, 2.0f}, {-2.3f, 2.3f}, {0.01f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {0.0f, 6.2831853f}}}, {}};
+        const auto found = findWorst(
+            space, run.budget(20000),
+            [&](const auto& in) {
+                const ConeSample cone = coneOf(in);
+                const LightSpacePoint p = projectToLight(lrsm.projection, cone.centre);
+                const twin::Outgoing exact =
+                    twin::algorithm1(lrsm, {double(p.u), double(p.v), double(p.depth), double(p.texelSize), p.valid}, cone, choice.cones);
+                if (exact.toJump < 1e-5) return -1.0;
+                const Vec3 got = sampleLrsm(lrsm, cone, choice.cones, phi);
+                double error = 0.0;
+                for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(double(got[c]) - exact.radiance[c]) / kSyntheticRadiance);
+                return error;
+            },
+            421 + static_cast<std::uint32_t>(index));
+        if (found.error > worst.error)
+            at = "choice " + std::to_string(index) + ", " + inputText<float, 6>({"x", "y", "z", "radius", "v.z", "azimuth"}, found.input);
         worst.include(found);
         ++index;
     }
-    run.add({.equation = equation, .function = function, .oracle = "Algorithm 1 in double, straight from the paper",
-             .domain = "random maps of 64^2 under sun and spot, 6 sets of choices; radii 1 cm .. 1 m of a 4 m cube", .boundName = "kSampleLrsmMaxError",
-             .errorKind = "relative to the map's largest radiance", .bound = double(kSampleLrsmMaxError)},
+    run.add({.equation = equation,
+             .function = function,
+             .oracle = "Algorithm 1 in double, straight from the paper",
+             .domain = "random maps of 64^2 under sun and spot, 6 sets of choices; radii 1 cm .. 1 m of a 4 m cube",
+             .boundName = "kSampleLrsmMaxError",
+             .errorKind = "relative to the map's largest radiance",
+             .bound = double(kSampleLrsmMaxError)},
             worst, at);
 }
 
@@ -166,18 +195,34 @@ void checkProduct(CheckRun& run)
     cones.backface = Backface::cosine;
     const NormalCdf phi;
     // Depth 1/2 of a range of 4 m from y = 2: the wall is y = 0.
-    const SearchSpace<float, 3> space{{{{-0.3f, 0.3f}, {0.01f, 0.4f, Spacing::logarithmic}, {-1.0f, 1.0f}}}, {{0.0f, 0.02f, 1.0f}, {0.1f, 0.1f, 0.5f}, {-0.1f, 0.1f, 0.5f}}};
-    const auto worst = findWorst(space, run.budget(60000), [&](const std::array<float, 3>& in) {
-        const ConeSample cone{Vec3(0.1f, in[0], 0.2f), in[1], Vec3(std::sqrt(std::max(0.0f, 1.0f - in[2] * in[2])), in[2], 0.0f)};
-        const double v = static_cast<double>(oracle::visibility(0.5L, 2.5e-5L, (2.0L - static_cast<long double>(in[0])) / 4.0L, static_cast<long double>(in[1]) / 4.0L));
-        const double expected = 2.0 * v * std::max(0.0, double(in[2]));
-        return std::abs(double(sampleLrsm(lrsm, cone, cones, phi).x) - expected) / 2.0;
-    }, 431);
-    run.add({.equation = "5", .function = "sampleLrsm, a wall facing the light", .oracle = "R V N in closed form", .domain = "samples within 0.3 m of the wall, radii 1 cm .. 0.4 m",
-             .boundName = "kSampleLrsmFlatMaxError", .errorKind = "relative to R", .bound = double(kSampleLrsmFlatMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(2048, [&](std::size_t i) {
-                 return sampleLrsm(lrsm, {Vec3(float(i % 64) * 0.05f - 1.6f, 0.02f, 0.2f), 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, cones, phi).x; }) : 0.0},
-            worst, inputText<float, 3>({"height", "radius", "v.y"}, worst.input));
+    const SearchSpace<float, 3> space{{{{-0.3f, 0.3f}, {0.01f, 0.4f, Spacing::logarithmic}, {-1.0f, 1.0f}}},
+                                      {{0.0f, 0.02f, 1.0f}, {0.1f, 0.1f, 0.5f}, {-0.1f, 0.1f, 0.5f}}};
+    const auto worst = findWorst(
+        space, run.budget(60000),
+        [&](const std::array<float, 3>& in) {
+            const ConeSample cone{Vec3(0.1f, in[0], 0.2f), in[1], Vec3(std::sqrt(std::max(0.0f, 1.0f - in[2] * in[2])), in[2], 0.0f)};
+            const double v =
+                static_cast<double>(oracle::visibility(0.5L, 2.5e-5L, (2.0L - static_cast<long double>(in[0])) / 4.0L, static_cast<long double>(in[1]) / 4.0L));
+            const double expected = 2.0 * v * std::max(0.0, double(in[2]));
+            return std::abs(double(sampleLrsm(lrsm, cone, cones, phi).x) - expected) / 2.0;
+        },
+        431);
+    run.add(
+        {.equation = "5",
+         .function = "sampleLrsm, a wall facing the light",
+         .oracle = "R V N in closed form",
+         .domain = "samples within 0.3 m of the wall, radii 1 cm .. 0.4 m",
+         .boundName = "kSampleLrsmFlatMaxError",
+         .errorKind = "relative to R",
+         .bound = double(kSampleLrsmFlatMaxError),
+         .nanoseconds =
+             run.measuresSpeed()
+                 ? medianNanoseconds(2048,
+                                     [&](std::size_t i) {
+                                         return sampleLrsm(lrsm, {Vec3(float(i % 64) * 0.05f - 1.6f, 0.02f, 0.2f), 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, cones, phi).x;
+                                     })
+                 : 0.0},
+        worst, inputText<float, 3>({"height", "radius", "v.y"}, worst.input));
 }
 
 /// The map's own edge belongs to it; a hundredth of it beyond does not, nor does anything behind a spot.
@@ -195,13 +240,21 @@ void checkMapEdges(CheckRun& run)
     const Lrsm spot = buildLrsm(rsm, layers);
     const NormalCdf phi;
     const auto wrong = exhaust(13, [&](std::uint64_t i) {
-        if (i == 12) return sampleLrsm(spot, {spot.projection.position - 0.5f * spot.projection.forward, 9.0f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x == 0.0f ? 0.0 : 1.0;
+        if (i == 12)
+            return sampleLrsm(spot, {spot.projection.position - 0.5f * spot.projection.forward, 9.0f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x == 0.0f
+                       ? 0.0
+                       : 1.0;
         const float reach = (i / 4 == 0 ? 1.0f : i / 4 == 1 ? 1.002f : 0.998f) * sun.projection.halfWidth * (i % 2 ? -1.0f : 1.0f);
         const Vec3 centre = i / 2 % 2 ? Vec3(reach, 0.0f, 0.0f) : Vec3(0.0f, 0.0f, reach);
         return (sampleLrsm(sun, {centre, 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x > 0.0f) == (i / 4 != 1) ? 0.0 : 1.0;
     });
-    run.add({.equation = "5", .function = "sampleLrsm, the map's edges", .oracle = "lit on the edge and inside, 0 beyond and behind the light", .domain = "all four edges, and 1/500 to either side", .boundName = "exact",
-             .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "5",
+             .function = "sampleLrsm, the map's edges",
+             .oracle = "lit on the edge and inside, 0 beyond and behind the light",
+             .domain = "all four edges, and 1/500 to either side",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             wrong, "case " + exactText(wrong.input[0]));
 }
 

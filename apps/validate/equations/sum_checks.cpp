@@ -16,14 +16,24 @@ constexpr long double kPiWide = 3.14159265358979323846264338327950288L;
 
 void checkReflected(CheckRun& run)
 {
-    const SearchSpace<float, 3> space{{{{1e-3f, 1.0f, Spacing::logarithmic}, {1e-6f, 1e6f, Spacing::logarithmic}, {1e-4f, 1.0f, Spacing::logarithmic}}}, {{1.0f, 1.0f, 1.0f}}};
-    const auto worst = findWorst(space, run.budget(150000), [](const auto& in) {
-        const long double exact = static_cast<long double>(in[0]) * static_cast<long double>(in[1]) * static_cast<long double>(in[2]) / kPiWide;
-        return static_cast<double>(std::abs(static_cast<long double>(reflectedRadiance(Vec3(in[0]), Vec3(in[1]), in[2]).y) / exact - 1.0L));
-    }, 601);
-    run.add({.equation = "2", .function = "reflectedRadiance", .oracle = "rho L_d <n.l> / pi in long double", .domain = "rho 1e-3 .. 1, L_d 1e-6 .. 1e6, <n.l> 1e-4 .. 1",
-             .boundName = "kReflectedRadianceMaxError", .errorKind = "relative", .bound = double(kReflectedRadianceMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return reflectedRadiance(Vec3(0.5f), Vec3(float(i)), 0.3f).x; }) : 0.0},
+    const SearchSpace<float, 3> space{{{{1e-3f, 1.0f, Spacing::logarithmic}, {1e-6f, 1e6f, Spacing::logarithmic}, {1e-4f, 1.0f, Spacing::logarithmic}}},
+                                      {{1.0f, 1.0f, 1.0f}}};
+    const auto worst = findWorst(
+        space, run.budget(150000),
+        [](const auto& in) {
+            const long double exact = static_cast<long double>(in[0]) * static_cast<long double>(in[1]) * static_cast<long double>(in[2]) / kPiWide;
+            return static_cast<double>(std::abs(static_cast<long double>(reflectedRadiance(Vec3(in[0]), Vec3(in[1]), in[2]).y) / exact - 1.0L));
+        },
+        601);
+    run.add({.equation = "2",
+             .function = "reflectedRadiance",
+             .oracle = "rho L_d <n.l> / pi in long double",
+             .domain = "rho 1e-3 .. 1, L_d 1e-6 .. 1e6, <n.l> 1e-4 .. 1",
+             .boundName = "kReflectedRadianceMaxError",
+             .errorKind = "relative",
+             .bound = double(kReflectedRadianceMaxError),
+             .nanoseconds =
+                 run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return reflectedRadiance(Vec3(0.5f), Vec3(float(i)), 0.3f).x; }) : 0.0},
             worst, inputText<float, 3>({"rho", "L_d", "n.l"}, worst.input));
 }
 
@@ -50,20 +60,27 @@ void checkFloor(CheckRun& run)
         const double cosine = 1.0 / std::sqrt(1.0 + tx * tx + ty * ty), r = kHeight / cosine;
         const RsmTexel& texel = rsm.texels.at(x, y);
         if (texel.coverage != 1.0f) return 1.0;
-        if (depth) return std::max(std::abs(double(rsm.projection.depthNear) + double(rsm.depthLinear.at(x, y)) * double(rsm.projection.depthRange()) - r) / r,
-                                   std::abs(double(texel.nDotL) - cosine));
+        if (depth)
+            return std::max(std::abs(double(rsm.projection.depthNear) + double(rsm.depthLinear.at(x, y)) * double(rsm.projection.depthRange()) - r) / r,
+                            std::abs(double(texel.nDotL) - cosine));
         const double ramp = std::clamp((cosine - std::cos(kOuter)) / (std::cos(kInner) - std::cos(kOuter)), 0.0, 1.0);
         double error = 0.0;
         for (int k = 0; k < 3; ++k)
-            error = std::max(error, std::abs(double(texel.radiance[k]) / (rho[k] * intensity[k] / (kHeight * kHeight)) * double(kPiWide) - cosine * cosine * cosine * ramp * ramp));
+            error = std::max(error, std::abs(double(texel.radiance[k]) / (rho[k] * intensity[k] / (kHeight * kHeight)) * double(kPiWide) -
+                                             cosine * cosine * cosine * ramp * ramp));
         return error;
     };
     const auto texels = static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(n);
     const auto add = [&](const char* function, const char* boundName, const char* kind, double bound, bool depth) {
         const auto worst = exhaust(texels, [&](std::uint64_t i) { return errorAt(i, depth); });
         const int at = static_cast<int>(worst.input[0]);
-        run.add({.equation = "2", .function = function, .oracle = "closed form in double", .domain = "every texel of a floor 2.5 m under a spot of 0.6 rad", .boundName = boundName,
-                 .errorKind = kind, .bound = bound},
+        run.add({.equation = "2",
+                 .function = function,
+                 .oracle = "closed form in double",
+                 .domain = "every texel of a floor 2.5 m under a spot of 0.6 rad",
+                 .boundName = boundName,
+                 .errorKind = kind,
+                 .bound = bound},
                 worst, "texel " + std::to_string(at % n) + ", " + std::to_string(at / n));
     };
     add("renderRsm, radiance", "kRsmRadianceMaxError", "relative to the radiance below the light", double(kRsmRadianceMaxError), false);
@@ -103,8 +120,13 @@ void checkSums(CheckRun& run)
         const double sine = std::sin(std::atan(halfWidth));
         return std::max(std::abs(sum / (edge * edge) - 1.0), std::abs(angle / (4.0 * std::asin(sine * sine)) - 1.0));
     });
-    run.add({.equation = "4", .function = "weightEq4, texelSolidAngle", .oracle = "area of the floor, solid angle of a pyramid", .domain = "maps of 256^2, half field of view 6 .. 39 degrees",
-             .boundName = "kTexelSumMaxError", .errorKind = "relative", .bound = kTexelSumMaxError},
+    run.add({.equation = "4",
+             .function = "weightEq4, texelSolidAngle",
+             .oracle = "area of the floor, solid angle of a pyramid",
+             .domain = "maps of 256^2, half field of view 6 .. 39 degrees",
+             .boundName = "kTexelSumMaxError",
+             .errorKind = "relative",
+             .bound = kTexelSumMaxError},
             area, "halfWidth = 0.1 x (1 + " + exactText(area.input[0]) + ")");
 
     // Eq. 3 where every texel has the same radiance and lies inside: that radiance, for any v; and with an empty footprint: 0.
@@ -114,22 +136,34 @@ void checkSums(CheckRun& run)
         const DVec3 v = glm::normalize(DVec3(random.uniform(-1, 1), random.uniform(0.05f, 1), random.uniform(-1, 1)));
         return std::abs(radianceEq3(texels, DVec3(0.0), 3.0, v).x - 3.0) + glm::length(radianceEq3(texels, DVec3(0.0, 9.0, 0.0), 1.0, v));
     });
-    run.add({.equation = "3", .function = "radianceEq3, constant radiance", .oracle = "that radiance; 0 outside the sample", .domain = "any v above the floor", .boundName = "kDirectSumMaxError",
-             .errorKind = "absolute", .bound = kDirectSumMaxError},
+    run.add({.equation = "3",
+             .function = "radianceEq3, constant radiance",
+             .oracle = "that radiance; 0 outside the sample",
+             .domain = "any v above the floor",
+             .boundName = "kDirectSumMaxError",
+             .errorKind = "absolute",
+             .bound = kDirectSumMaxError},
             constant, "draw " + exactText(constant.input[0]));
 
     // Eq. 3 over two planes: w' weighs each by <n.v> / <n.l>. Light and solid angles equal, normals at angles a and b to the light, v at c.
     const auto wedge = exhaust(500, [&](std::uint64_t) {
         const double a = random.uniform(-1.4f, 1.4f), b = random.uniform(-1.4f, 1.4f), c = random.uniform(-1.5f, 1.5f);
         const auto facing = [](double angle) { return DVec3(std::sin(angle), std::cos(angle), 0.0); };
-        const std::array<TexelSample, 3> three = {TexelSample{DVec3(0.0), facing(a), DVec3(0, 1, 0), DVec3(2.0), 0.25}, TexelSample{DVec3(0.0), facing(b), DVec3(0, 1, 0), DVec3(5.0), 0.5},
+        const std::array<TexelSample, 3> three = {TexelSample{DVec3(0.0), facing(a), DVec3(0, 1, 0), DVec3(2.0), 0.25},
+                                                  TexelSample{DVec3(0.0), facing(b), DVec3(0, 1, 0), DVec3(5.0), 0.5},
                                                   TexelSample{DVec3(9.0), facing(0.0), DVec3(0, 1, 0), DVec3(7.0), 0.125}};
-        const double wa = 0.25 * std::max(0.0, std::cos(a - c)) / std::cos(a), wb = 0.5 * std::max(0.0, std::cos(b - c)) / std::cos(b), outside = 0.125 * std::cos(c);
+        const double wa = 0.25 * std::max(0.0, std::cos(a - c)) / std::cos(a), wb = 0.5 * std::max(0.0, std::cos(b - c)) / std::cos(b),
+                     outside = 0.125 * std::cos(c);
         return std::abs(radianceEq3(three, DVec3(0.0), 1.0, facing(c)).x - (2.0 * wa + 5.0 * wb) / (wa + wb + outside)) +
                std::abs(visibilityEq7(three, DVec3(0.0), 1.0) - 0.75 / 0.875);
     });
-    run.add({.equation = "3", .function = "radianceEq3, two planes and a texel outside", .oracle = "closed form", .domain = "normals within 80 degrees of the light, any v", .boundName = "kThreeTexelSumMaxError",
-             .errorKind = "absolute", .bound = kThreeTexelSumMaxError},
+    run.add({.equation = "3",
+             .function = "radianceEq3, two planes and a texel outside",
+             .oracle = "closed form",
+             .domain = "normals within 80 degrees of the light, any v",
+             .boundName = "kThreeTexelSumMaxError",
+             .errorKind = "absolute",
+             .bound = kThreeTexelSumMaxError},
             wedge, "draw " + exactText(wedge.input[0]));
 
     // Eq. 7: a disc in a square of texels that face a parallel light.
@@ -137,11 +171,17 @@ void checkSums(CheckRun& run)
         const double radius = 0.05 + 0.011 * double(i);
         std::vector<TexelSample> square;
         for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) square.push_back({DVec3((x + 0.5) / n - 0.5, 0.0, (y + 0.5) / n - 0.5), DVec3(0, 1, 0), DVec3(0, 1, 0), DVec3(1.0), 1.0});
+            for (int x = 0; x < n; ++x)
+                square.push_back({DVec3((x + 0.5) / n - 0.5, 0.0, (y + 0.5) / n - 0.5), DVec3(0, 1, 0), DVec3(0, 1, 0), DVec3(1.0), 1.0});
         return std::abs(visibilityEq7(square, DVec3(0.0), radius) - static_cast<double>(kPiWide) * radius * radius);
     });
-    run.add({.equation = "7", .function = "visibilityEq7", .oracle = "area of the disc", .domain = "256^2 texels, radii 0.05 .. 0.48 of the map", .boundName = "kCountedDiscMaxError",
-             .errorKind = "absolute", .bound = kCountedDiscMaxError},
+    run.add({.equation = "7",
+             .function = "visibilityEq7",
+             .oracle = "area of the disc",
+             .domain = "256^2 texels, radii 0.05 .. 0.48 of the map",
+             .boundName = "kCountedDiscMaxError",
+             .errorKind = "absolute",
+             .bound = kCountedDiscMaxError},
             disc, "i = " + exactText(disc.input[0]));
 }
 
@@ -157,16 +197,31 @@ void checkGaussianModel(CheckRun& run)
         const double exact = (std::abs(-1.0 - zc) <= rc ? 0.5 : 0.0) + (std::abs(1.0 - zc) <= rc ? 0.5 : 0.0);  // half at -1, half at 1
         return gaussianVisibilityExact(0.0, 1.0, zc, rc) - exact;
     };
-    const auto slope = findWorst(windows, run.budget(30000), [&](const auto& in) { return std::abs(slopeError(in[0], in[1])); }, 621);
-    run.add({.equation = "12", .function = "Eq. 12 for Eq. 7, a sloped plane", .oracle = "uniform depths, closed form", .domain = "any window", .boundName = "kGaussianForSlopeMaxError",
-             .errorKind = "absolute, of the model", .bound = kGaussianForSlopeMaxError},
+    const auto slope = findWorst(
+        windows, run.budget(30000), [&](const auto& in) { return std::abs(slopeError(in[0], in[1])); }, 621);
+    run.add({.equation = "12",
+             .function = "Eq. 12 for Eq. 7, a sloped plane",
+             .oracle = "uniform depths, closed form",
+             .domain = "any window",
+             .boundName = "kGaussianForSlopeMaxError",
+             .errorKind = "absolute, of the model",
+             .bound = kGaussianForSlopeMaxError},
             slope, inputText<double, 2>({"zc / half range", "rc / half range"}, slope.input));
-    const auto edge = findWorst(windows, run.budget(30000), [&](const auto& in) { return std::abs(edgeError(in[0], in[1])); }, 622);
-    run.add({.equation = "12", .function = "Eq. 12 for Eq. 7, two depths in one footprint", .oracle = "two halves, closed form", .domain = "any window", .boundName = "kGaussianForEdgeMaxError",
-             .errorKind = "absolute, of the model", .bound = kGaussianForEdgeMaxError},
+    const auto edge = findWorst(
+        windows, run.budget(30000), [&](const auto& in) { return std::abs(edgeError(in[0], in[1])); }, 622);
+    run.add({.equation = "12",
+             .function = "Eq. 12 for Eq. 7, two depths in one footprint",
+             .oracle = "two halves, closed form",
+             .domain = "any window",
+             .boundName = "kGaussianForEdgeMaxError",
+             .errorKind = "absolute, of the model",
+             .bound = kGaussianForEdgeMaxError},
             edge, inputText<double, 2>({"zc / half gap", "rc / half gap"}, edge.input));
 
-    EquationCurve curve{.equation = "12", .title = "Eq. 12 in place of Eq. 7: V minus the exact fraction, window about the mean", .xLabel = "r_c over half the depth range", .yLabel = "error of V"};
+    EquationCurve curve{.equation = "12",
+                        .title = "Eq. 12 in place of Eq. 7: V minus the exact fraction, window about the mean",
+                        .xLabel = "r_c over half the depth range",
+                        .yLabel = "error of V"};
     EquationSeries onSlope{.name = "sloped plane"}, onEdge{.name = "two depths"};
     for (int i = 0; i <= 200; ++i) {
         const double rc = 0.0125 * i;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lrsm/layers.h"
 #include "apps/validate/equations/worst_case.h"
+#include "lrsm/layers.h"
 
 /// Reflective shadow maps made of numbers, for checks that need no scene.
 namespace lrsm {

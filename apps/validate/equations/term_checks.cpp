@@ -12,8 +12,9 @@ namespace {
 void checkNormalTerm(CheckRun& run)
 {
     // A mean normal of length up to 1, premultiplied; directions by their coordinates, so that the search can move each.
-    const SearchSpace<float, 7> space{{{{-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {0x1p-16f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}}},
-                                      {{1.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f}, {0.6f, 0.8f, 0.0f, 0.25f, 0.6f, 0.8f, 0.0f}}};
+    const SearchSpace<float, 7> space{
+        {{{-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {0x1p-16f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}}},
+        {{1.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f}, {0.6f, 0.8f, 0.0f, 0.25f, 0.6f, 0.8f, 0.0f}}};
     const auto inputs = [](const std::array<float, 7>& in) {
         FilteredTexel texel;
         texel.normalAlpha = in[3];
@@ -21,19 +22,29 @@ void checkNormalTerm(CheckRun& run)
         const Vec3 v(in[4], in[5], in[6]);
         return std::pair(texel, v / std::max(glm::length(v), 1e-6f));
     };
-    const auto worst = findWorst(space, run.budget(150000), [&](const auto& in) {
-        const auto [texel, v] = inputs(in);
-        const long double n = (static_cast<long double>(texel.normal.x) * v.x + static_cast<long double>(texel.normal.y) * v.y +
-                               static_cast<long double>(texel.normal.z) * v.z) / texel.normalAlpha;
-        return static_cast<double>(std::abs(std::max(n, 0.0L) - static_cast<long double>(normalTerm(texel, v))));
-    }, 401);
+    const auto worst = findWorst(
+        space, run.budget(150000),
+        [&](const auto& in) {
+            const auto [texel, v] = inputs(in);
+            const long double n = (static_cast<long double>(texel.normal.x) * v.x + static_cast<long double>(texel.normal.y) * v.y +
+                                   static_cast<long double>(texel.normal.z) * v.z) /
+                                  texel.normalAlpha;
+            return static_cast<double>(std::abs(std::max(n, 0.0L) - static_cast<long double>(normalTerm(texel, v))));
+        },
+        401);
     const auto [texel, v] = inputs(worst.input);
-    run.add({.equation = "8", .function = "normalTerm", .oracle = "dot product and division in long double",
-             .domain = "mean normals of length <= 1, alpha 2^-16 .. 1, unit v_c", .boundName = "kNormalTermMaxError", .errorKind = "absolute",
-             .bound = double(kNormalTermMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [t = texel](std::size_t i) { return normalTerm(t, Vec3(float(i), 1.0f, 0.5f)); }) : 0.0},
-            worst, inputText<float, 7>({"alpha n.x", "alpha n.y", "alpha n.z", "alpha", "v.x", "v.y", "v.z"},
-                                       {texel.normal.x, texel.normal.y, texel.normal.z, texel.normalAlpha, v.x, v.y, v.z}));
+    run.add(
+        {.equation = "8",
+         .function = "normalTerm",
+         .oracle = "dot product and division in long double",
+         .domain = "mean normals of length <= 1, alpha 2^-16 .. 1, unit v_c",
+         .boundName = "kNormalTermMaxError",
+         .errorKind = "absolute",
+         .bound = double(kNormalTermMaxError),
+         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [t = texel](std::size_t i) { return normalTerm(t, Vec3(float(i), 1.0f, 0.5f)); }) : 0.0},
+        worst,
+        inputText<float, 7>({"alpha n.x", "alpha n.y", "alpha n.z", "alpha", "v.x", "v.y", "v.z"},
+                            {texel.normal.x, texel.normal.y, texel.normal.z, texel.normalAlpha, v.x, v.y, v.z}));
 
     const auto weights = exhaust(2 * 200, [](std::uint64_t i) {
         const auto mode = static_cast<Backface>(i % 2);
@@ -41,15 +52,21 @@ void checkNormalTerm(CheckRun& run)
         const double exact = mode == Backface::cosine ? double(n) : n > 0.0f ? 1.0 : 0.0;
         return double(backfaceWeight(n, mode)) == exact ? 0.0 : 1.0;
     });
-    run.add({.equation = "8", .function = "backfaceWeight", .oracle = "N, H(N)", .domain = "N in [0, 1], both modes", .boundName = "exact",
-             .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "8",
+             .function = "backfaceWeight",
+             .oracle = "N, H(N)",
+             .domain = "N in [0, 1], both modes",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             weights, "case " + exactText(weights.input[0]));
 }
 
 /// Eq. 10 and 11, from the premultiplied sums as they are given; and the floor, from what UNORM16 leaves of a flat texel.
 void checkMoments(CheckRun& run)
 {
-    const SearchSpace<float, 3> space{{{{0x1p-16f, 1.0f, Spacing::logarithmic}, {0.0f, 1.0f}, {0.0f, 1.0f}}}, {{1.0f, 1.0f, 0.0f}, {1.0f, 0.5f, 1.0f}, {0.25f, 1.0f, 0.5f}}};
+    const SearchSpace<float, 3> space{{{{0x1p-16f, 1.0f, Spacing::logarithmic}, {0.0f, 1.0f}, {0.0f, 1.0f}}},
+                                      {{1.0f, 1.0f, 0.0f}, {1.0f, 0.5f, 1.0f}, {0.25f, 1.0f, 0.5f}}};
     const auto texelOf = [](const std::array<float, 3>& in) {
         FilteredTexel texel;
         texel.depthAlpha = in[0];
@@ -61,43 +78,76 @@ void checkMoments(CheckRun& run)
         const FilteredTexel t = texelOf(in);
         return inputText<float, 3>({"alpha z", "alpha z^2", "alpha"}, {t.depth, t.depthSquared, t.depthAlpha});
     };
-    const auto mean = findWorst(space, run.budget(100000), [&](const auto& in) {
-        const FilteredTexel t = texelOf(in);
-        return std::abs(static_cast<double>(static_cast<long double>(depthMoments(t).mean) - static_cast<long double>(t.depth) / t.depthAlpha));
-    }, 402);
-    run.add({.equation = "10", .function = "depthMoments, mean", .oracle = "division in long double", .domain = "depths in [0, 1], alpha 2^-16 .. 1",
-             .boundName = "kDepthMeanMaxError", .errorKind = "absolute", .bound = double(kDepthMeanMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return depthMoments(texelOf({1.0f, float(i) / 4096.0f, 0.5f})).variance; }) : 0.0},
+    const auto mean = findWorst(
+        space, run.budget(100000),
+        [&](const auto& in) {
+            const FilteredTexel t = texelOf(in);
+            return std::abs(static_cast<double>(static_cast<long double>(depthMoments(t).mean) - static_cast<long double>(t.depth) / t.depthAlpha));
+        },
+        402);
+    run.add({.equation = "10",
+             .function = "depthMoments, mean",
+             .oracle = "division in long double",
+             .domain = "depths in [0, 1], alpha 2^-16 .. 1",
+             .boundName = "kDepthMeanMaxError",
+             .errorKind = "absolute",
+             .bound = double(kDepthMeanMaxError),
+             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096,
+                                                                    [&](std::size_t i) {
+                                                                        return depthMoments(texelOf({1.0f, float(i) / 4096.0f, 0.5f})).variance;
+                                                                    })
+                                                : 0.0},
             mean, text(mean.input));
-    const auto variance = findWorst(space, run.budget(150000), [&](const auto& in) {
-        const FilteredTexel t = texelOf(in);
-        const long double m = static_cast<long double>(t.depth) / t.depthAlpha, exact = static_cast<long double>(t.depthSquared) / t.depthAlpha - m * m;
-        const DepthMoments raw = depthMoments(t, -kInfinity), floored = depthMoments(t);
-        if (raw.negative != (raw.variance < 0.0f)) return 1.0;
-        return std::max(std::abs(static_cast<double>(raw.variance - exact)), std::abs(static_cast<double>(floored.variance - std::max(exact, 2.5e-5L))));
-    }, 403);
-    run.add({.equation = "11", .function = "depthMoments, variance", .oracle = "E[z^2] - E[z]^2 in long double, floored at 2.5e-5",
-             .domain = "depths in [0, 1], alpha 2^-16 .. 1", .boundName = "kDepthVarianceMaxError", .errorKind = "absolute", .bound = double(kDepthVarianceMaxError)},
+    const auto variance = findWorst(
+        space, run.budget(150000),
+        [&](const auto& in) {
+            const FilteredTexel t = texelOf(in);
+            const long double m = static_cast<long double>(t.depth) / t.depthAlpha, exact = static_cast<long double>(t.depthSquared) / t.depthAlpha - m * m;
+            const DepthMoments raw = depthMoments(t, -kInfinity), floored = depthMoments(t);
+            if (raw.negative != (raw.variance < 0.0f)) return 1.0;
+            return std::max(std::abs(static_cast<double>(raw.variance - exact)), std::abs(static_cast<double>(floored.variance - std::max(exact, 2.5e-5L))));
+        },
+        403);
+    run.add({.equation = "11",
+             .function = "depthMoments, variance",
+             .oracle = "E[z^2] - E[z]^2 in long double, floored at 2.5e-5",
+             .domain = "depths in [0, 1], alpha 2^-16 .. 1",
+             .boundName = "kDepthVarianceMaxError",
+             .errorKind = "absolute",
+             .bound = double(kDepthVarianceMaxError)},
             variance, text(variance.input));
 
     // The floor: a flat texel's moments, each rounded to UNORM16, leave a variance of nothing but rounding.
     const SearchSpace<float, 1> flat{{{{0.0f, 1.0f}}}, {{1.0f}, {0.0f}}};
-    const auto left = findWorst(flat, run.budget(300000), [](const auto& in) {
-        ConversionCounts counts;
-        FilteredTexel t;
-        t.depth = roundToUnorm16(in[0], counts);
-        t.depthSquared = roundToUnorm16(in[0] * in[0], counts);
-        t.depthAlpha = 1.0f;
-        return std::abs(double(depthMoments(t, -kInfinity).variance));
-    }, 404);
-    run.add({.equation = "11", .function = "kVarianceFloor covers what UNORM16 leaves of a flat texel", .oracle = "the true variance, 0", .domain = "z in [0, 1]",
-             .boundName = "kVarianceFloor", .errorKind = "absolute", .bound = double(kVarianceFloor)},
+    const auto left = findWorst(
+        flat, run.budget(300000),
+        [](const auto& in) {
+            ConversionCounts counts;
+            FilteredTexel t;
+            t.depth = roundToUnorm16(in[0], counts);
+            t.depthSquared = roundToUnorm16(in[0] * in[0], counts);
+            t.depthAlpha = 1.0f;
+            return std::abs(double(depthMoments(t, -kInfinity).variance));
+        },
+        404);
+    run.add({.equation = "11",
+             .function = "kVarianceFloor covers what UNORM16 leaves of a flat texel",
+             .oracle = "the true variance, 0",
+             .domain = "z in [0, 1]",
+             .boundName = "kVarianceFloor",
+             .errorKind = "absolute",
+             .bound = double(kVarianceFloor)},
             left, inputText<float, 1>({"z"}, left.input));
     Worst<float, 1> slack = left;
     slack.error = double(kVarianceFloor) / left.error;
     slack.sum = 0.0;
-    run.add({.equation = "11", .function = "kVarianceFloor is no larger than that needs", .oracle = "the row above", .domain = "z in [0, 1]",
-             .boundName = "kVarianceFloorSlack", .errorKind = "floor over need", .bound = kVarianceFloorSlack},
+    run.add({.equation = "11",
+             .function = "kVarianceFloor is no larger than that needs",
+             .oracle = "the row above",
+             .domain = "z in [0, 1]",
+             .boundName = "kVarianceFloorSlack",
+             .errorKind = "floor over need",
+             .bound = kVarianceFloorSlack},
             slack, inputText<float, 1>({"z"}, slack.input));
 }
 
@@ -106,16 +156,29 @@ void checkLevel(CheckRun& run)
 {
     const SearchSpace<float, 4> space{{{{1e-3f, 1e3f, Spacing::logarithmic}, {1e-4f, 1e2f, Spacing::logarithmic}, {-4.0f, 4.0f}, {0.0f, 4.0f}}},
                                       {{2.0f, 1.0f, 0.0f, 0.0f}, {4.0f, 1.0f, 0.0f, 0.0f}, {1.0f, 0.01f, 0.5f, 0.0f}, {1e-3f, 1.0f, 0.0f, 2.0f}}};
-    const auto worst = findWorst(space, run.budget(150000), [](const auto& in) {
-        return std::abs(double(lrsmLevel(in[0], in[1], in[2], in[3])) - twin::level(double(in[0]), double(in[1]), double(in[2]), double(in[3])));
-    }, 405);
-    run.add({.equation = "sec5", .function = "lrsmLevel", .oracle = "log2 in double", .domain = "diameters 1 mm .. 1 km, texels 0.1 mm .. 100 m, bias +-4",
-             .boundName = "kLrsmLevelMaxError", .errorKind = "levels", .bound = double(kLrsmLevelMaxError),
+    const auto worst = findWorst(
+        space, run.budget(150000),
+        [](const auto& in) {
+            return std::abs(double(lrsmLevel(in[0], in[1], in[2], in[3])) - twin::level(double(in[0]), double(in[1]), double(in[2]), double(in[3])));
+        },
+        405);
+    run.add({.equation = "sec5",
+             .function = "lrsmLevel",
+             .oracle = "log2 in double",
+             .domain = "diameters 1 mm .. 1 km, texels 0.1 mm .. 100 m, bias +-4",
+             .boundName = "kLrsmLevelMaxError",
+             .errorKind = "levels",
+             .bound = double(kLrsmLevelMaxError),
              .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return lrsmLevel(0.1f + float(i), 0.3f, 0.0f, 0.0f); }) : 0.0},
             worst, inputText<float, 4>({"diameter", "texel", "bias", "min"}, worst.input));
     const auto zero = exhaust(3, [](std::uint64_t i) { return lrsmLevel(0.0f, 0.1f, 0.0f, float(i)) == float(i) ? 0.0 : 1.0; });
-    run.add({.equation = "sec5", .function = "lrsmLevel, diameter 0", .oracle = "minLevel", .domain = "minLevel 0, 1, 2", .boundName = "exact",
-             .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "sec5",
+             .function = "lrsmLevel, diameter 0",
+             .oracle = "minLevel",
+             .domain = "minLevel 0, 1, 2",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             zero, "minLevel = " + exactText(zero.input[0]));
 }
 
@@ -124,17 +187,26 @@ void checkProjection(CheckRun& run)
     for (const bool spot : {false, true}) {
         const LightProjection projection = spot ? spotOverCube(512) : sunOverCube(512);
         const SearchSpace<float, 3> space{{{{-2.0f, 2.0f}, {-2.0f, 2.0f}, {-2.0f, 2.0f}}}, {{0.0f, 0.0f, 0.0f}, {2.0f, 2.0f, 2.0f}, {-2.0f, -2.0f, -2.0f}}};
-        const auto worst = findWorst(space, run.budget(80000), [&](const auto& in) {
-            const LightSpacePoint p = projectToLight(projection, Vec3(in[0], in[1], in[2]));
-            const twin::Projected exact = twin::project(projection, twin::DVec3(in[0], in[1], in[2]));
-            if (p.valid != exact.valid) return 1.0;
-            return std::max({std::abs(double(p.u) - exact.u), std::abs(double(p.v) - exact.v), std::abs(double(p.depth) - exact.depth),
-                             std::abs(double(p.texelSize) / exact.texelSize - 1.0)});
-        }, 406);
-        run.add({.equation = "sec5", .function = std::string("projectToLight, ") + (spot ? "spot" : "directional"), .oracle = "double",
-                 .domain = "points of a 4 m cube, lit from 2 .. 4 m", .boundName = spot ? "kProjectionMaxError" : "kDirectionalProjectionMaxError", .errorKind = "absolute, u v depth; relative, texel",
+        const auto worst = findWorst(
+            space, run.budget(80000),
+            [&](const auto& in) {
+                const LightSpacePoint p = projectToLight(projection, Vec3(in[0], in[1], in[2]));
+                const twin::Projected exact = twin::project(projection, twin::DVec3(in[0], in[1], in[2]));
+                if (p.valid != exact.valid) return 1.0;
+                return std::max({std::abs(double(p.u) - exact.u), std::abs(double(p.v) - exact.v), std::abs(double(p.depth) - exact.depth),
+                                 std::abs(double(p.texelSize) / exact.texelSize - 1.0)});
+            },
+            406);
+        run.add({.equation = "sec5",
+                 .function = std::string("projectToLight, ") + (spot ? "spot" : "directional"),
+                 .oracle = "double",
+                 .domain = "points of a 4 m cube, lit from 2 .. 4 m",
+                 .boundName = spot ? "kProjectionMaxError" : "kDirectionalProjectionMaxError",
+                 .errorKind = "absolute, u v depth; relative, texel",
                  .bound = double(spot ? kProjectionMaxError : kDirectionalProjectionMaxError),
-                 .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return projectToLight(projection, Vec3(float(i) * 1e-3f, 0.1f, 0.2f)).u; }) : 0.0},
+                 .nanoseconds = run.measuresSpeed()
+                                    ? medianNanoseconds(4096, [&](std::size_t i) { return projectToLight(projection, Vec3(float(i) * 1e-3f, 0.1f, 0.2f)).u; })
+                                    : 0.0},
                 worst, inputText<float, 3>({"x", "y", "z"}, worst.input));
     }
 }
@@ -158,21 +230,28 @@ void checkFit(CheckRun& run)
         double error = std::abs(double(sun.halfWidth) / (0.5 * texel * n) - 1.0);
         const double middle[2] = {0.5 * (double(box.min.x) + double(box.max.x)), 0.5 * (double(box.min.z) + double(box.max.z))};
         const double at[2] = {double(sun.position.x), double(sun.position.z)};
-        for (int k = 0; k < 2; ++k) error = std::max({error, std::abs(at[k] / texel - std::round(at[k] / texel)) * 0.1, std::abs(at[k] - middle[k]) > 0.501 * texel ? 1.0 : 0.0});
-        error = std::max({error, std::abs(double(sun.position.y) - double(box.max.y)), std::abs(double(sun.depthNear)), std::abs(double(sun.depthFar) - (double(box.max.y) - double(box.min.y)))});
+        for (int k = 0; k < 2; ++k)
+            error = std::max({error, std::abs(at[k] / texel - std::round(at[k] / texel)) * 0.1, std::abs(at[k] - middle[k]) > 0.501 * texel ? 1.0 : 0.0});
+        error = std::max({error, std::abs(double(sun.position.y) - double(box.max.y)), std::abs(double(sun.depthNear)),
+                          std::abs(double(sun.depthFar) - (double(box.max.y) - double(box.min.y)))});
 
         light.type = LightType::spot;
         light.position = box.max + Vec3(1.0f, 2.0f, 0.5f);
         light.outerConeAngle = random.uniform(0.2f, 1.2f);
         const LightProjection spot = fitLightProjection(light, box, n);
         const glm::dvec3 near = glm::dvec3(box.max) - glm::dvec3(light.position), far = glm::dvec3(box.min) - glm::dvec3(light.position);
-        error = std::max({error, std::abs(double(spot.halfWidth) / std::tan(double(light.outerConeAngle)) - 1.0), std::abs(double(spot.depthNear) / glm::length(near) - 1.0),
-                          std::abs(double(spot.depthFar) / glm::length(far) - 1.0)});
+        error = std::max({error, std::abs(double(spot.halfWidth) / std::tan(double(light.outerConeAngle)) - 1.0),
+                          std::abs(double(spot.depthNear) / glm::length(near) - 1.0), std::abs(double(spot.depthFar) / glm::length(far) - 1.0)});
         light.type = LightType::cubeFace;
         return fitLightProjection(light, box, n).halfWidth == 1.0f ? error : 1.0;
     });
-    run.add({.equation = "sec5", .function = "fitLightProjection", .oracle = "the box in double", .domain = "boxes of 1 .. 9 m, sun, spot, cube face", .boundName = "kFitMaxError",
-             .errorKind = "relative; metres; tenth of a texel", .bound = double(kFitMaxError)},
+    run.add({.equation = "sec5",
+             .function = "fitLightProjection",
+             .oracle = "the box in double",
+             .domain = "boxes of 1 .. 9 m, sun, spot, cube face",
+             .boundName = "kFitMaxError",
+             .errorKind = "relative; metres; tenth of a texel",
+             .bound = double(kFitMaxError)},
             worst, "draw " + exactText(worst.input[0]));
 }
 

@@ -35,8 +35,10 @@ struct StorageChoice {
 void addStorageTrades(CheckRun& run)
 {
     const Rsm rsm = gentleMap(256);
-    const StorageChoice choices[4] = {{"storage", "gpu", Storage::gpu, HalfRounding::d3d}, {"storage", "float32", Storage::float32, HalfRounding::d3d},
-                                      {"half_rounding", "d3d", Storage::gpu, HalfRounding::d3d}, {"half_rounding", "nearest_even", Storage::gpu, HalfRounding::nearestEven}};
+    const StorageChoice choices[4] = {{"storage", "gpu", Storage::gpu, HalfRounding::d3d},
+                                      {"storage", "float32", Storage::float32, HalfRounding::d3d},
+                                      {"half_rounding", "d3d", Storage::gpu, HalfRounding::d3d},
+                                      {"half_rounding", "nearest_even", Storage::gpu, HalfRounding::nearestEven}};
     ConeSettings cones;
     cones.backface = Backface::cosine;
     const NormalCdf phi;
@@ -45,12 +47,17 @@ void addStorageTrades(CheckRun& run)
     layers.storage = Storage::float32;
     const Lrsm exact = buildLrsm(rsm, layers);
 
-    EquationCurve curve{.equation = "table1", .title = "bias of A R by mip level: half toward zero and nearest even", .xLabel = "mip level", .yLabel = "mean of stored / exact - 1"};
+    EquationCurve curve{.equation = "table1",
+                        .title = "bias of A R by mip level: half toward zero and nearest even",
+                        .xLabel = "mip level",
+                        .yLabel = "mean of stored / exact - 1"};
     for (const StorageChoice& choice : choices) {
         layers.storage = choice.storage;
         layers.halfRounding = choice.rounding;
         const Lrsm lrsm = buildLrsm(rsm, layers);
-        EquationTrade trade{.setting = choice.setting, .choice = choice.name, .quantity = choice.setting == std::string("storage") ? "L, Algorithm 1, over the largest radiance" : "A R of all levels, relative"};
+        EquationTrade trade{.setting = choice.setting,
+                            .choice = choice.name,
+                            .quantity = choice.setting == std::string("storage") ? "L, Algorithm 1, over the largest radiance" : "A R of all levels, relative"};
         std::uint64_t count = 0;
         const auto include = [&](double error) {
             trade.worst = std::max(trade.worst, std::abs(error));
@@ -62,7 +69,8 @@ void addStorageTrades(CheckRun& run)
             // The twin samples the float32 maps: what is left is storage, and the kernel's arithmetic.
             SearchRandom random(902);
             for (std::uint64_t i = 0; i < run.draws(20000); ++i) {
-                const ConeSample cone{Vec3(random.uniform(-1.9f, 1.9f), random.uniform(-0.5f, 0.5f), random.uniform(-1.9f, 1.9f)), random.uniform(0.02f, 0.5f), randomUnit(random)};
+                const ConeSample cone{Vec3(random.uniform(-1.9f, 1.9f), random.uniform(-0.5f, 0.5f), random.uniform(-1.9f, 1.9f)), random.uniform(0.02f, 0.5f),
+                                      randomUnit(random)};
                 const twin::Projected p = twin::project(exact.projection, twin::DVec3(cone.centre));
                 const twin::Outgoing expected = twin::algorithm1(exact, p, cone, cones);
                 if (expected.toJump > 1e-5) include((double(sampleLrsm(lrsm, cone, cones, phi).x) - expected.radiance.x) / kSyntheticRadiance);

@@ -82,19 +82,27 @@ void checkLevels(CheckRun& run)
                     std::vector<IVec3> bad;
                     for (int level = 1; level < pyramid.levels(); ++level) {
                         const int n = edge >> level;
-                        const auto found = exhaust(std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(pyramid.channels()), [&](std::uint64_t i) {
-                            const int c = pyramid.channels(), axis = static_cast<int>(i) % c, j = static_cast<int>(i) / c;
-                            const IVec3 p(j % n, j / n % n, j / n / n);
-                            // A float32 level adds its eight children in some order; a UNORM8 code is off by the division alone.
-                            const double slack = 1.2e-7, expected = expectedTexel(pyramid, level, axis, p);
-                            return std::abs(double(pyramid.value(level, axis, p.x, p.y, p.z)) - expected) <= slack * std::max(expected, 1e-3) ? 0.0 : 1.0;
-                        });
-                        if (found.error > wrong.error) at = "axes " + std::to_string(int(axes)) + ", storage " + std::to_string(int(storage)) + ", filter " + std::to_string(int(filter)) + ", level " + std::to_string(level) + ", texel " + exactText(found.input[0]);
+                        const auto found =
+                            exhaust(std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(n) * std::uint64_t(pyramid.channels()), [&](std::uint64_t i) {
+                                const int c = pyramid.channels(), axis = static_cast<int>(i) % c, j = static_cast<int>(i) / c;
+                                const IVec3 p(j % n, j / n % n, j / n / n);
+                                // A float32 level adds its eight children in some order; a UNORM8 code is off by the division alone.
+                                const double slack = 1.2e-7, expected = expectedTexel(pyramid, level, axis, p);
+                                return std::abs(double(pyramid.value(level, axis, p.x, p.y, p.z)) - expected) <= slack * std::max(expected, 1e-3) ? 0.0 : 1.0;
+                            });
+                        if (found.error > wrong.error)
+                            at = "axes " + std::to_string(int(axes)) + ", storage " + std::to_string(int(storage)) + ", filter " + std::to_string(int(filter)) +
+                                 ", level " + std::to_string(level) + ", texel " + exactText(found.input[0]);
                         wrong.include(found);
                     }
                 }
-    run.add({.equation = "sec3", .function = "buildPyramid", .oracle = "columns counted, means in double", .domain = "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters",
-             .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    run.add({.equation = "sec3",
+             .function = "buildPyramid",
+             .oracle = "columns counted, means in double",
+             .domain = "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             wrong, at);
     const auto scales = exhaust(6, [](std::uint64_t i) {
         OpacityPyramid pyramid;
@@ -104,8 +112,14 @@ void checkLevels(CheckRun& run)
         pyramid.axes = OpacityAxes::isotropic;
         return directional == kScale[i] && densityScale(pyramid, static_cast<int>(i)) == 1.0f ? 0.0 : 1.0;
     });
-    run.add({.equation = "sec3", .function = "densityScale", .oracle = "2^-min(level, 3)", .domain = "levels 0 .. 5", .boundName = "exact", .errorKind = "wrong results", .bound = 0.0}, scales,
-            "level = " + exactText(scales.input[0]));
+    run.add({.equation = "sec3",
+             .function = "densityScale",
+             .oracle = "2^-min(level, 3)",
+             .domain = "levels 0 .. 5",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
+            scales, "level = " + exactText(scales.input[0]));
 }
 
 /// Quadrilinear lookup by tents over all texels near, in double.
@@ -115,7 +129,8 @@ glm::dvec3 lookup(const OpacityPyramid& pyramid, const std::array<float, 4>& in)
     glm::dvec3 sum(0.0);
     for (int level = static_cast<int>(lod); level <= std::min(static_cast<int>(lod) + 1, pyramid.levels() - 1); ++level) {
         const int n = pyramid.resolutionAt(level);
-        const double share = std::max(0.0, 1.0 - std::abs(lod - level)), scale = pyramid.axes == OpacityAxes::directional ? std::ldexp(1.0, -std::min(level, 3)) : 1.0;
+        const double share = std::max(0.0, 1.0 - std::abs(lod - level)),
+                     scale = pyramid.axes == OpacityAxes::directional ? std::ldexp(1.0, -std::min(level, 3)) : 1.0;
         int first[3];
         for (int i = 0; i < 3; ++i) first[i] = static_cast<int>(std::floor(double(in[std::size_t(i)]) / (1 << level) - 0.5));
         for (int k = 0; k < 8; ++k) {
@@ -145,36 +160,60 @@ void checkLookup(CheckRun& run)
             SearchSpace<float, 4> space{{{{-1.0f, 33.0f}, {-1.0f, 33.0f}, {-1.0f, 33.0f}, {-0.5f, 5.5f}}}, {}};
             for (const float p : {0.0f, 0.5f, 4.0f, 16.5f, 31.5f, 32.0f})
                 for (const float level : {0.0f, 1.0f, 2.5f, 5.0f}) space.planted.push_back({p, 16.0f, 32.0f - p, level});
-            const auto found = findWorst(space, run.budget(25000), [&](const auto& in) {
-                const Vec3 got = sampleOpacity(pyramid, Vec3(in[0], in[1], in[2]), in[3], FilterFraction::exact);
-                const glm::dvec3 exact = lookup(pyramid, in);
-                return std::max({std::abs(double(got.x) - exact.x), std::abs(double(got.y) - exact.y), std::abs(double(got.z) - exact.z)});
-            }, 812);
-            if (found.error > worst.error) at = "axes " + std::to_string(int(axes)) + ", storage " + std::to_string(int(storage)) + ", " + inputText<float, 4>({"x", "y", "z", "level"}, found.input);
+            const auto found = findWorst(
+                space, run.budget(25000),
+                [&](const auto& in) {
+                    const Vec3 got = sampleOpacity(pyramid, Vec3(in[0], in[1], in[2]), in[3], FilterFraction::exact);
+                    const glm::dvec3 exact = lookup(pyramid, in);
+                    return std::max({std::abs(double(got.x) - exact.x), std::abs(double(got.y) - exact.y), std::abs(double(got.z) - exact.z)});
+                },
+                812);
+            if (found.error > worst.error)
+                at = "axes " + std::to_string(int(axes)) + ", storage " + std::to_string(int(storage)) + ", " +
+                     inputText<float, 4>({"x", "y", "z", "level"}, found.input);
             worst.include(found);
-            if (run.measuresSpeed()) nanoseconds = medianNanoseconds(4096, [&](std::size_t i) { return sampleOpacity(pyramid, Vec3(float(i % 64) * 0.5f, float(i / 64) * 0.5f, 9.3f), 1.4f, FilterFraction::exact).x; });
+            if (run.measuresSpeed())
+                nanoseconds = medianNanoseconds(4096, [&](std::size_t i) {
+                    return sampleOpacity(pyramid, Vec3(float(i % 64) * 0.5f, float(i / 64) * 0.5f, 9.3f), 1.4f, FilterFraction::exact).x;
+                });
         }
-    run.add({.equation = "sec3", .function = "sampleOpacity", .oracle = "tents over the stored texels in double", .domain = "32^3 with its border, levels -0.5 .. 5.5, both axes and storages",
-             .boundName = "kOpacityLookupMaxError", .errorKind = "absolute", .bound = double(kOpacityLookupMaxError), .nanoseconds = nanoseconds},
+    run.add({.equation = "sec3",
+             .function = "sampleOpacity",
+             .oracle = "tents over the stored texels in double",
+             .domain = "32^3 with its border, levels -0.5 .. 5.5, both axes and storages",
+             .boundName = "kOpacityLookupMaxError",
+             .errorKind = "absolute",
+             .bound = double(kOpacityLookupMaxError),
+             .nanoseconds = nanoseconds},
             worst, at);
 
     // Fractions in 1/256: less than half a step beside a lattice point is that point; on it the exact lookup is the answer.
     const OpacityPyramid pyramid = pyramidOf(32, 0.2, OpacityAxes::directional, Storage::gpu, MipFilter::mean, 811);
     const SearchSpace<float, 4> inside{{{{0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 5.0f}}}, {}};
-    const auto snapped = findWorst(inside, run.budget(15000), [&](const std::array<float, 4>& in) {
-        const int level = static_cast<int>(in[3]);
-        const float step = std::ldexp(1.0f, level - 8);
-        Vec3 p;
-        for (int i = 0; i < 3; ++i) p[i] = std::floor(in[std::size_t(i)] / step) * step;
-        const Vec3 on = sampleOpacity(pyramid, p, float(level), FilterFraction::fixed8), exact = sampleOpacity(pyramid, p, float(level), FilterFraction::exact);
-        const Vec3 beside = sampleOpacity(pyramid, p + Vec3(0.497f, -0.33f, 0.497f) * step, float(level), FilterFraction::fixed8);
-        const float lod = std::floor(in[3] * 256.0f) / 256.0f;
-        const Vec3 texel(std::ldexp(16.5f, 0), 16.5f, 16.5f);
-        const bool levels = sampleOpacity(pyramid, texel, std::min(lod + 0.497f / 256.0f, 5.0f), FilterFraction::fixed8) == sampleOpacity(pyramid, texel, std::min(lod, 5.0f), FilterFraction::fixed8);
-        return on == exact && on == beside && levels ? 0.0 : 1.0;
-    }, 813);
-    run.add({.equation = "sec3", .function = "sampleOpacity, fractions in 1/256", .oracle = "the exact lookup at the nearest lattice point", .domain = "lattice points of every level, and up to 0.497 of a step beside them",
-             .boundName = "exact", .errorKind = "wrong results", .bound = 0.0},
+    const auto snapped = findWorst(
+        inside, run.budget(15000),
+        [&](const std::array<float, 4>& in) {
+            const int level = static_cast<int>(in[3]);
+            const float step = std::ldexp(1.0f, level - 8);
+            Vec3 p;
+            for (int i = 0; i < 3; ++i) p[i] = std::floor(in[std::size_t(i)] / step) * step;
+            const Vec3 on = sampleOpacity(pyramid, p, float(level), FilterFraction::fixed8),
+                       exact = sampleOpacity(pyramid, p, float(level), FilterFraction::exact);
+            const Vec3 beside = sampleOpacity(pyramid, p + Vec3(0.497f, -0.33f, 0.497f) * step, float(level), FilterFraction::fixed8);
+            const float lod = std::floor(in[3] * 256.0f) / 256.0f;
+            const Vec3 texel(std::ldexp(16.5f, 0), 16.5f, 16.5f);
+            const bool levels = sampleOpacity(pyramid, texel, std::min(lod + 0.497f / 256.0f, 5.0f), FilterFraction::fixed8) ==
+                                sampleOpacity(pyramid, texel, std::min(lod, 5.0f), FilterFraction::fixed8);
+            return on == exact && on == beside && levels ? 0.0 : 1.0;
+        },
+        813);
+    run.add({.equation = "sec3",
+             .function = "sampleOpacity, fractions in 1/256",
+             .oracle = "the exact lookup at the nearest lattice point",
+             .domain = "lattice points of every level, and up to 0.497 of a step beside them",
+             .boundName = "exact",
+             .errorKind = "wrong results",
+             .bound = 0.0},
             snapped, inputText<float, 4>({"x", "y", "z", "level"}, snapped.input));
 }
 

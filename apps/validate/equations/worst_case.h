@@ -45,8 +45,8 @@ struct SearchBudget {
 template <class T, std::size_t N>
 struct Worst {
     std::array<T, N> input{};
-    double error = -1.0;         ///< -1: nothing was comparable
-    double sum = 0.0;            ///< of errors over the sweep, which is no worse than a fair sample of the domain
+    double error = -1.0;  ///< -1: nothing was comparable
+    double sum = 0.0;     ///< of errors over the sweep, which is no worse than a fair sample of the domain
     std::uint64_t swept = 0;
     std::uint64_t evaluations = 0;
     double mean() const { return swept ? sum / static_cast<double>(swept) : 0.0; }
@@ -68,8 +68,7 @@ T moveByUlps(T x, std::int64_t steps)
     const Bits bits = std::bit_cast<Bits>(x);
     const auto ordered = static_cast<std::int64_t>(bits < 0 ? static_cast<Bits>(kSign - bits) : bits);
     const auto largest = static_cast<std::int64_t>(std::bit_cast<Bits>(std::numeric_limits<T>::max()));
-    const std::int64_t moved = steps > 0 ? (ordered > largest - steps ? largest : ordered + steps)
-                                         : (ordered < -largest - steps ? -largest : ordered + steps);
+    const std::int64_t moved = steps > 0 ? (ordered > largest - steps ? largest : ordered + steps) : (ordered < -largest - steps ? -largest : ordered + steps);
     return std::bit_cast<T>(moved < 0 ? static_cast<Bits>(kSign - static_cast<Bits>(moved)) : static_cast<Bits>(moved));
 }
 

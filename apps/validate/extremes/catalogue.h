@@ -1,8 +1,8 @@
 #pragma once
 
+#include "apps/validate/extremes/extremes.h"
 #include "conetrace/pass_log.h"
 #include "core/base/hash.h"
-#include "apps/validate/extremes/extremes.h"
 
 #include <initializer_list>
 

@@ -1,7 +1,7 @@
-#include "core/base/errors.h"
-#include "core/settings/settings_table.h"
-#include "core/scene/shapes.h"
 #include "apps/validate/extremes/worlds.h"
+#include "core/base/errors.h"
+#include "core/scene/shapes.h"
+#include "core/settings/settings_table.h"
 #include "voxel/voxelize.h"
 
 #include <charconv>
@@ -32,7 +32,8 @@ Case finite(const std::string& name, const std::string& what, Assignments assign
 /// The settings table takes none of these; nor does the pass that is given the value without asking the table.
 Case refused(const std::string& name, const std::string& what, Assignments assignments, std::function<void(Settings&)> force = {})
 {
-    return {name, what, "refused in one line, by the table and by the frame", [=](Mode mode, Probe& probe) {
+    return {name, what, "refused in one line, by the table and by the frame",
+            [=](Mode mode, Probe& probe) {
                 for (const std::string& assignment : assignments)
                     probe.refuses(assignment, assignment.substr(0, assignment.find('=')), [&] {
                         Settings settings = smallSettings(mode);
@@ -76,8 +77,8 @@ void largeGrid(Probe& probe, int resolution)
     frame.resolution = resolution;
     const auto n = static_cast<float>(resolution);
     const float y = 0.5f * n + 0.25f;
-    const BitGrid grid = voxelizeTriangles({Vec3(-1, y, -1), Vec3(-1, y, n + 1), Vec3(n + 1, y, n + 1), Vec3(-1, y, -1), Vec3(n + 1, y, n + 1), Vec3(n + 1, y, -1)}, frame,
-                                           Voxelization::thin);
+    const BitGrid grid = voxelizeTriangles(
+        {Vec3(-1, y, -1), Vec3(-1, y, n + 1), Vec3(n + 1, y, n + 1), Vec3(-1, y, -1), Vec3(n + 1, y, n + 1), Vec3(n + 1, y, -1)}, frame, Voxelization::thin);
     probe.note(static_cast<double>(grid.countOccupied()));
     probe.bound("voxels set over n^2, - 1", static_cast<double>(grid.countOccupied()) / (double(n) * double(n)) - 1.0, 0.0);
 }
@@ -88,17 +89,21 @@ Group coneCases()
 {
     Group group{"cones", {}};
     auto& cases = group.cases;
-    cases.push_back(refused("aperture 0", "specular and shadow cones of no width", {"specular_aperture_degrees=0", "shadow_cone_aperture_degrees=0", "aperture_scale=0"},
+    cases.push_back(refused("aperture 0", "specular and shadow cones of no width",
+                            {"specular_aperture_degrees=0", "shadow_cone_aperture_degrees=0", "aperture_scale=0"},
                             [](Settings& s) { s.cones.specularApertureDegrees = 0.0f; }));
-    cases.push_back(refused("aperture of 179 degrees", "wider than a cone can be traced", {"specular_aperture_degrees=179"}, [](Settings& s) { s.cones.specularApertureDegrees = 179.0f; }));
+    cases.push_back(refused("aperture of 179 degrees", "wider than a cone can be traced", {"specular_aperture_degrees=179"},
+                            [](Settings& s) { s.cones.specularApertureDegrees = 179.0f; }));
     cases.push_back(refused("zero cones", "cone_count = 0", {"cone_count=0"}, [](Settings& s) { s.cones.count = 0; }));
     cases.push_back(refused("minus one cone", "cone_count = -1", {"cone_count=-1"}, [](Settings& s) { s.cones.count = -1; }));
     cases.push_back(refused("more steps than 1e5", "max_steps = 100001", {"max_steps=100001"}, [](Settings& s) { s.cones.maxSteps = 100001; }));
-    cases.push_back(refused("step 0, NaN, negative", "no step", {"step=0", "step=nan", "step=-1", "step=1e-50"}, [](Settings& s) { s.cones.step = std::nanf(""); }));
+    cases.push_back(
+        refused("step 0, NaN, negative", "no step", {"step=0", "step=nan", "step=-1", "step=1e-50"}, [](Settings& s) { s.cones.step = std::nanf(""); }));
     cases.push_back(refused("no sets of cones", "sets_per_pixel = 0", {"sets_per_pixel=0"}, [](Settings& s) { s.cones.setsPerPixel = 0; }));
     cases.push_back(finite("aperture of 1e-3 degrees", "specular cone", {"specular_aperture=fixed", "specular_aperture_degrees=0.001"}));
     cases.push_back(finite("aperture of 170 degrees", "specular cone", {"specular_aperture=fixed", "specular_aperture_degrees=170"}));
-    cases.push_back(finite("aperture of 1e-38 degrees", "specular and shadow cones of denormal width", {"specular_aperture=fixed", "specular_aperture_degrees=1e-38", "shadow_cone_aperture_degrees=1e-38", "shadows=cone"}));
+    cases.push_back(finite("aperture of 1e-38 degrees", "specular and shadow cones of denormal width",
+                           {"specular_aperture=fixed", "specular_aperture_degrees=1e-38", "shadow_cone_aperture_degrees=1e-38", "shadows=cone"}));
     cases.push_back(finite("shadow cones of 90 degrees", "", {"shadows=cone", "shadow_cone_aperture_degrees=90"}));
     cases.push_back(finite("diffuse cones of 1e-6 of their aperture", "", {"aperture_scale=1e-6"}));
     cases.push_back(finite("diffuse cones of twice their aperture", "", {"aperture_scale=2"}));
@@ -106,13 +111,16 @@ Group coneCases()
     cases.push_back(finite("one cone", "", {"cone_count=1"}));
     cases.push_back(finite("256 cones", "", {"cone_count=256"}));
     cases.push_back(finite("one step", "", {"max_steps=1"}));
-    cases.push_back({"a step that float32 loses", "step = 1e-30", "refused in one line: the cone would end in silence", [](Mode mode, Probe& probe) {
+    cases.push_back({"a step that float32 loses", "step = 1e-30", "refused in one line: the cone would end in silence",
+                     [](Mode mode, Probe& probe) {
                          Settings settings = smallSettings(mode);
                          applySetting(settings, "step=1e-30");
                          renderWorld(room(), settings, 4, 3);
                          (void)probe;
-                     }, true, true});
-    cases.push_back({"irradiance of a furnace", "the sphere lit from its centre, 64^3 voxels, by six cones and by 32", "albedo * intensity within 10 %", [](Mode mode, Probe& probe) {
+                     },
+                     true, true});
+    cases.push_back({"irradiance of a furnace", "the sphere lit from its centre, 64^3 voxels, by six cones and by 32", "albedo * intensity within 10 %",
+                     [](Mode mode, Probe& probe) {
                          for (const int count : {6, 32}) {
                              Settings settings = smallSettings(mode);
                              settings.voxel.resolution = 64;
@@ -130,24 +138,29 @@ Group resolutionCases()
     Group group{"resolutions", {}};
     auto& cases = group.cases;
     for (const int resolution : {1, 2, 4, 8, 16, 128})
-        cases.push_back({"voxels " + std::to_string(resolution), "the room in this grid, three voxelizations, both kinds of opacity", "every pass finite, and some voxel set",
-                         [resolution](Mode mode, Probe& probe) { gridOf(mode, probe, resolution); }});
+        cases.push_back({"voxels " + std::to_string(resolution), "the room in this grid, three voxelizations, both kinds of opacity",
+                         "every pass finite, and some voxel set", [resolution](Mode mode, Probe& probe) { gridOf(mode, probe, resolution); }});
     for (const int resolution : {512, 1024, 2048})
-        cases.push_back({"voxels " + std::to_string(resolution) + ", bits", "a plane through the middle of this grid (2048: 1.1 GB)", "exactly n^2 voxels; skipped where the machine lacks the memory",
-                         [resolution](Mode, Probe& probe) { largeGrid(probe, resolution); }, true});
+        cases.push_back({"voxels " + std::to_string(resolution) + ", bits", "a plane through the middle of this grid (2048: 1.1 GB)",
+                         "exactly n^2 voxels; skipped where the machine lacks the memory", [resolution](Mode, Probe& probe) { largeGrid(probe, resolution); },
+                         true});
     for (const int resolution : {2, 4, 1024})
         cases.push_back(finite("RSM " + std::to_string(resolution), "the room's light by this map", {"rsm_resolution=" + std::to_string(resolution)}));
     cases.push_back(finite("layers at their most", "16 x 8 layers, all kept", {"depth_layers=16", "normal_layers=8", "drop_empty=false"}));
-    cases.push_back(finite("smallest of all", "voxels 1, RSM 2, one layer, one cone, one step", {"voxel_resolution=1", "rsm_resolution=2", "depth_layers=1", "normal_layers=1", "cone_count=1", "max_steps=1"}));
+    cases.push_back(finite("smallest of all", "voxels 1, RSM 2, one layer, one cone, one step",
+                           {"voxel_resolution=1", "rsm_resolution=2", "depth_layers=1", "normal_layers=1", "cone_count=1", "max_steps=1"}));
     cases.push_back(refused("RSM 1", "no base texel would be left", {"rsm_resolution=1", "rsm_resolution=3", "rsm_resolution=16384"}));
     cases.push_back(refused("voxels 0, 3, 4096", "no power of two in 1 .. 2048", {"voxel_resolution=0", "voxel_resolution=3", "voxel_resolution=4096"}));
     for (const int resolution : {0, -4, 3, 4096, 1 << 30})
-        cases.push_back({"voxelize at " + std::to_string(resolution), "the pass itself, given this", "refused in one line", [resolution](Mode, Probe&) { voxelize(room().scene, {.resolution = resolution}); }, true, true});
+        cases.push_back({"voxelize at " + std::to_string(resolution), "the pass itself, given this", "refused in one line",
+                         [resolution](Mode, Probe&) { voxelize(room().scene, {.resolution = resolution}); }, true, true});
     for (const int resolution : {0, 1, -4, 3, 1 << 30})
-        cases.push_back({"renderRsm at " + std::to_string(resolution), "the pass itself, given this", "refused in one line", [resolution](Mode, Probe&) {
+        cases.push_back({"renderRsm at " + std::to_string(resolution), "the pass itself, given this", "refused in one line",
+                         [resolution](Mode, Probe&) {
                              const World world = room();
                              renderRsm(world.scene, world.scene.lights[0], {}, {.resolution = resolution});
-                         }, true, true});
+                         },
+                         true, true});
     return group;
 }
 
@@ -220,7 +233,8 @@ void combinations(Mode mode, Probe& probe, std::uint32_t seed)
         Settings settings = smallSettings(mode);
         std::string which;
         for (const SettingInfo& info : describeSettings()) {
-            if (info.shorthand || info.stage == "force" || info.key.find("storage") != std::string::npos || info.key.find("rounding") != std::string::npos) continue;
+            if (info.shorthand || info.stage == "force" || info.key.find("storage") != std::string::npos || info.key.find("rounding") != std::string::npos)
+                continue;
             if (info.key == "sets_per_pixel" || info.key == "cone_count" || info.key == "max_steps") continue;
             if (draw(2) == 0) continue;
             const std::vector<std::string> ends = endsOf(info);
@@ -247,17 +261,19 @@ Group settingCases()
         group.cases.push_back({info.key + " at each end", "allowed: " + info.allowed + "; both estimators", "every pass finite, or refused in one line",
                                [info](Mode mode, Probe& probe) { bothEnds(mode, probe, info); }});
         if (info.allowed.front() != '(' && info.allowed.front() != '[') continue;
-        group.cases.push_back({info.key + " no number", "nan, inf, -inf, 1e39, empty, text", "refused in one line that names the key", [info](Mode, Probe& probe) {
+        group.cases.push_back({info.key + " no number", "nan, inf, -inf, 1e39, empty, text", "refused in one line that names the key",
+                               [info](Mode, Probe& probe) {
                                    for (const char* value : {"nan", "inf", "-inf", "1e39", "-1e39", "", "x", "1,5", "0x10", "1e", "--1"})
                                        probe.refuses(info.key + "=" + value, info.key, [&] {
                                            Settings settings;
                                            applySetting(settings, info.key + "=" + value);
                                        });
-                               }, true});
+                               },
+                               true});
     }
     for (std::uint32_t seed = 1; seed <= 4; ++seed)
-        group.cases.push_back({"combinations " + std::to_string(seed), "8 frames with half of all settings at an end of their range, drawn by a fixed rule", "every pass finite, or refused in one line",
-                               [seed](Mode mode, Probe& probe) { combinations(mode, probe, seed); }});
+        group.cases.push_back({"combinations " + std::to_string(seed), "8 frames with half of all settings at an end of their range, drawn by a fixed rule",
+                               "every pass finite, or refused in one line", [seed](Mode mode, Probe& probe) { combinations(mode, probe, seed); }});
     return group;
 }
 

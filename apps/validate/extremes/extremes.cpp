@@ -1,7 +1,7 @@
 #include "apps/validate/extremes/extremes.h"
 
-#include "core/base/errors.h"
 #include "apps/validate/extremes/catalogue.h"
+#include "core/base/errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,10 +43,10 @@ void runOnce(const Case& entry, Mode mode, Probe& probe)
 const char* nameOf(Mode mode)
 {
     switch (mode) {
-        case Mode::gpuD3d: return "gpu d3d";
-        case Mode::gpuNearestEven: return "gpu nearest_even";
-        case Mode::float32: return "float32";
-        default: return "any";
+    case Mode::gpuD3d: return "gpu d3d";
+    case Mode::gpuNearestEven: return "gpu nearest_even";
+    case Mode::float32: return "float32";
+    default: return "any";
     }
 }
 
@@ -114,7 +114,10 @@ void Probe::refused(const std::string& line)
 ExtremeResult Probe::result() const
 {
     ExtremeResult result;
-    result.outcome = broken() ? Outcome::broken : !skipped_.empty() ? Outcome::skipped : refusals_ > 0 && bounds_ + passes_ == 0 ? Outcome::refused : Outcome::held;
+    result.outcome = broken()                                  ? Outcome::broken
+                     : !skipped_.empty()                       ? Outcome::skipped
+                     : refusals_ > 0 && bounds_ + passes_ == 0 ? Outcome::refused
+                                                               : Outcome::held;
     if (broken()) {
         result.detail = broken_;
     } else if (!skipped_.empty()) {
@@ -122,7 +125,8 @@ ExtremeResult Probe::result() const
     } else {
         if (passes_ > 0) result.detail = std::to_string(passes_) + " outputs finite";
         if (bounds_ > 0) result.detail += (result.detail.empty() ? "" : "; ") + worst_ + (bounds_ > 1 ? " (nearest of " + std::to_string(bounds_) + ")" : "");
-        if (refusals_ > 0) result.detail += (result.detail.empty() ? "" : "; ") + refusal_ + (refusals_ > 1 ? " (last of " + std::to_string(refusals_) + ")" : "");
+        if (refusals_ > 0)
+            result.detail += (result.detail.empty() ? "" : "; ") + refusal_ + (refusals_ > 1 ? " (last of " + std::to_string(refusals_) + ")" : "");
     }
     return result;
 }
@@ -166,8 +170,8 @@ ExtremesReport runExtremes(const ExtremesOptions& options)
         const Case* entry;
         Mode mode;
     };
-    const std::vector<Group> groups = {momentCases(), layerCases(), storageCases(), depthCases(),      geometryCases(), scaleCases(),
-                                       lightCases(),  cameraCases(), coneCases(),   resolutionCases(), settingCases(),  fileCases()};
+    const std::vector<Group> groups = {momentCases(), layerCases(),  storageCases(), depthCases(),      geometryCases(), scaleCases(),
+                                       lightCases(),  cameraCases(), coneCases(),    resolutionCases(), settingCases(),  fileCases()};
     std::vector<Job> jobs;
     for (const Group& group : groups)
         for (const Case& entry : group.cases) {

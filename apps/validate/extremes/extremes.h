@@ -37,10 +37,10 @@ struct ExtremeCurve {
     std::string name, xLabel, yLabel;
     bool logX = true, logY = true;  ///< for logY, an error of 0 is reported as 1e-12
     std::vector<CurveSeries> series;
-    double bound = 0.0;          ///< error that counts as accurate
-    double degradesFrom = 0.0;   ///< x from which on some series exceeds `bound`; +infinity: nowhere in the range
+    double bound = 0.0;              ///< error that counts as accurate
+    double degradesFrom = 0.0;       ///< x from which on some series exceeds `bound`; +infinity: nowhere in the range
     bool degradesDownwards = false;  ///< accuracy is lost towards small x: `degradesFrom` is the largest such x; 0: nowhere in the range
-    std::string sentence;        ///< the same in words
+    std::string sentence;            ///< the same in words
 };
 
 struct ExtremesReport {
@@ -50,7 +50,7 @@ struct ExtremesReport {
 };
 
 struct ExtremesOptions {
-    std::string only;  ///< run the cases and curves whose group or name contains this; empty: all
+    std::string only;                                                        ///< run the cases and curves whose group or name contains this; empty: all
     std::function<void(const std::string& name, double fraction)> progress;  ///< may be empty
 };
 

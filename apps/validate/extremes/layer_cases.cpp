@@ -8,7 +8,10 @@ namespace lrsm::extremes {
 namespace {
 
 /// Half keeps 11 bits, UNORM16 of a full texel 16: what a uniform map may lose. float32: roundings.
-double uniformBound(Mode mode) { return mode == Mode::float32 ? 1e-6 : 2e-3; }
+double uniformBound(Mode mode)
+{
+    return mode == Mode::float32 ? 1e-6 : 2e-3;
+}
 
 MapTexel slope(int x, int n)
 {
@@ -75,7 +78,8 @@ void uniform(Mode mode, Probe& probe, int resolution)
 
 void nothing(Mode mode, Probe& probe)
 {
-    const Rsm rsm = syntheticMap(32, [](int, int) { return MapTexel{.depth = 1.0f, .radiance = Vec3(0.0f), .normal = Vec3(0.0f), .nDotL = 0.0f, .coverage = 0.0f}; });
+    const Rsm rsm =
+        syntheticMap(32, [](int, int) { return MapTexel{.depth = 1.0f, .radiance = Vec3(0.0f), .normal = Vec3(0.0f), .nDotL = 0.0f, .coverage = 0.0f}; });
     for (const bool dropEmpty : {true, false}) {
         LayerSettings settings = layerSettings(mode, 16, 8);
         settings.dropEmpty = dropEmpty;
@@ -89,7 +93,9 @@ void nothing(Mode mode, Probe& probe)
 /// Depths in two clusters of three asked slices: the one between is empty.
 void gap(Mode mode, Probe& probe)
 {
-    const Rsm rsm = syntheticMap(64, [](int x, int) { return MapTexel{.depth = x < 32 ? 0.1f : 0.9f, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 0.9f, .coverage = 1.0f}; });
+    const Rsm rsm = syntheticMap(64, [](int x, int) {
+        return MapTexel{.depth = x < 32 ? 0.1f : 0.9f, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 0.9f, .coverage = 1.0f};
+    });
     LayerSettings dropping = layerSettings(mode, 3, 1), keeping = dropping;
     keeping.dropEmpty = false;
     const Lrsm dropped = buildLrsm(rsm, dropping), kept = buildLrsm(rsm, keeping);
@@ -97,7 +103,8 @@ void gap(Mode mode, Probe& probe)
     probe.output("lrsm", kept);
     probe.require(dropped.layers() == 2 && kept.layers() == 3, "number of layers kept");
     for (const float z : {0.05f, 0.1f, 0.5f, 0.9f})
-        probe.require(sampleAt(dropped, 0.3f, 0.5f, z, 0.1f, paperCones()) == sampleAt(kept, 0.3f, 0.5f, z, 0.1f, paperCones()), "dropping an empty layer changed a sample");
+        probe.require(sampleAt(dropped, 0.3f, 0.5f, z, 0.1f, paperCones()) == sampleAt(kept, 0.3f, 0.5f, z, 0.1f, paperCones()),
+                      "dropping an empty layer changed a sample");
     probe.require(sampleAt(dropped, 0.3f, 0.5f, 0.5f, 0.1f, paperCones()) == Vec3(0.0f), "light from between the clusters");
 }
 
@@ -122,7 +129,8 @@ void opposingNormals(Mode mode, Probe& probe)
 void oneDepth(Mode mode, Probe& probe)
 {
     for (const float depth : {0.0f, 1.0f, 0.5f, 0x1p-24f, std::nextafter(1.0f, 0.0f)}) {
-        const Rsm rsm = syntheticMap(32, [&](int, int) { return MapTexel{.depth = depth, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 1.0f, .coverage = 1.0f}; });
+        const Rsm rsm = syntheticMap(
+            32, [&](int, int) { return MapTexel{.depth = depth, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 1.0f, .coverage = 1.0f}; });
         for (const int layers : {1, 2, 16}) {
             const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode, layers, 8));
             probe.output("lrsm", lrsm);
@@ -151,23 +159,26 @@ void strangeSamples(Mode mode, Probe& probe)
     ConeSettings all = paperCones();
     all.layerSelection = LayerSelection::touched;
     const Lrsm parted = buildLrsm(rsm, layerSettings(mode, 3, 2));
-    probe.bound("sum over layers of a sphere far larger than the scene, - 1", double(sampleAt(parted, 0.5f, 0.5f, 0.5f, 1e10f, all).x) - 1.0, uniformBound(mode));
+    probe.bound("sum over layers of a sphere far larger than the scene, - 1", double(sampleAt(parted, 0.5f, 0.5f, 0.5f, 1e10f, all).x) - 1.0,
+                uniformBound(mode));
 }
 
 }  // namespace
 
 Group layerCases()
 {
-    return {"layers",
-            {{"z_c on layer edges", "1 to 16 depth layers, overlap 0, 0.1, 0.5; z_c at each edge and 2 ULPs to either side", "Eq. 15's weights sum to 1", edges},
-             {"one lit texel of 4096", "the chain's top holds alpha = 1/4096", "A R and alpha are right to the storage's step", loneTexel},
-             {"one texel", "an RSM of 2x2: one base texel, no mips", "a uniform map sends R", [](Mode mode, Probe& probe) { uniform(mode, probe, 2); }},
-             {"four texels", "an RSM of 4x4", "a uniform map sends R", [](Mode mode, Probe& probe) { uniform(mode, probe, 4); }},
-             {"all layers empty", "nothing drawn; 16 x 8 layers, empty ones dropped and kept", "no layer, no light, no NaN", nothing},
-             {"an empty layer", "two depth clusters in three slices", "dropping the middle one changes no sample", gap},
-             {"mean normal 0", "neighbouring texels face opposite ways", "N is 0: no light, no NaN", opposingNormals},
-             {"one depth", "all texels at depth 0, 1, 0.5, 2^-24, 1 - 2^-24; 1 to 16 layers", "one layer, and it sends R", oneDepth},
-             {"radii and places at the ends of float", "r_c 0 to 1e30; u, z outside, 1e20, NaN", "finite, in [0, R]; a huge sphere sees all of the map", strangeSamples}}};
+    return {
+        "layers",
+        {{"z_c on layer edges", "1 to 16 depth layers, overlap 0, 0.1, 0.5; z_c at each edge and 2 ULPs to either side", "Eq. 15's weights sum to 1", edges},
+         {"one lit texel of 4096", "the chain's top holds alpha = 1/4096", "A R and alpha are right to the storage's step", loneTexel},
+         {"one texel", "an RSM of 2x2: one base texel, no mips", "a uniform map sends R", [](Mode mode, Probe& probe) { uniform(mode, probe, 2); }},
+         {"four texels", "an RSM of 4x4", "a uniform map sends R", [](Mode mode, Probe& probe) { uniform(mode, probe, 4); }},
+         {"all layers empty", "nothing drawn; 16 x 8 layers, empty ones dropped and kept", "no layer, no light, no NaN", nothing},
+         {"an empty layer", "two depth clusters in three slices", "dropping the middle one changes no sample", gap},
+         {"mean normal 0", "neighbouring texels face opposite ways", "N is 0: no light, no NaN", opposingNormals},
+         {"one depth", "all texels at depth 0, 1, 0.5, 2^-24, 1 - 2^-24; 1 to 16 layers", "one layer, and it sends R", oneDepth},
+         {"radii and places at the ends of float", "r_c 0 to 1e30; u, z outside, 1e20, NaN", "finite, in [0, R]; a huge sphere sees all of the map",
+          strangeSamples}}};
 }
 
 namespace {
@@ -235,14 +246,16 @@ Group storageCases()
     for (const float factor : {0.0f, 1e-38f, 1e-8f, 1e8f, 1e26f, 1e38f / 4.0f}) {
         char text[16];
         std::snprintf(text, sizeof text, "%g", double(factor));
-        group.cases.push_back({std::string("light times ") + text, "the room's light, scaled; a whole frame", "every pass finite; float32 storage scales the picture",
+        group.cases.push_back({std::string("light times ") + text, "the room's light, scaled; a whole frame",
+                               "every pass finite; float32 storage scales the picture",
                                [factor](Mode mode, Probe& probe) { frameOfIntensity(mode, probe, factor); }});
     }
-    group.cases.push_back({"albedo 0", "the furnace, black", "no light but none wrong: all pictures exactly 0", [](Mode mode, Probe& probe) { albedo(mode, probe, 0.0f); }});
-    group.cases.push_back({"albedo 1", "the furnace, white", "irradiance = intensity within 15 % (32^3 voxels)", [](Mode mode, Probe& probe) { albedo(mode, probe, 1.0f); }});
-    group.cases.push_back({"albedo denormal", "the furnace of albedo 1e-40", "every pass finite", [](Mode mode, Probe& probe) {
-                               probe.frame(renderWorld(furnaceSphere(1e-40f, 1.0f, 3), smallSettings(mode)));
-                           }});
+    group.cases.push_back(
+        {"albedo 0", "the furnace, black", "no light but none wrong: all pictures exactly 0", [](Mode mode, Probe& probe) { albedo(mode, probe, 0.0f); }});
+    group.cases.push_back(
+        {"albedo 1", "the furnace, white", "irradiance = intensity within 15 % (32^3 voxels)", [](Mode mode, Probe& probe) { albedo(mode, probe, 1.0f); }});
+    group.cases.push_back({"albedo denormal", "the furnace of albedo 1e-40", "every pass finite",
+                           [](Mode mode, Probe& probe) { probe.frame(renderWorld(furnaceSphere(1e-40f, 1.0f, 3), smallSettings(mode))); }});
     return group;
 }
 
@@ -250,11 +263,13 @@ Group depthCases()
 {
     Group group{"depth ranges", {}};
     for (int exponent = -6; exponent <= 6; ++exponent)
-        group.cases.push_back({"depth range 1e" + std::to_string(exponent) + " m", "a slope over this range; spheres of a tenth of it along it, against a range of 1 m",
+        group.cases.push_back({"depth range 1e" + std::to_string(exponent) + " m",
+                               "a slope over this range; spheres of a tenth of it along it, against a range of 1 m",
                                "V is that of a range of 1 m: depths are warped, so the unit does not matter", [exponent](Mode mode, Probe& probe) {
                                    const auto range = float(std::pow(10.0, exponent));
                                    const auto texel = [](int x, int) { return slope(x, 64); };
-                                   const Lrsm unit = buildLrsm(syntheticMap(64, texel), layerSettings(mode)), lrsm = buildLrsm(syntheticMap(64, texel, range), layerSettings(mode));
+                                   const Lrsm unit = buildLrsm(syntheticMap(64, texel), layerSettings(mode)),
+                                              lrsm = buildLrsm(syntheticMap(64, texel, range), layerSettings(mode));
                                    probe.output("lrsm", lrsm);
                                    ConeSettings cones = paperCones();
                                    cones.rsmMinLevel = 16.0f;  // the chain's top for both: spheres of kilometres and of millimetres read the same texel
@@ -265,20 +280,23 @@ Group depthCases()
                                    probe.bound("difference of f A R V N", worst, 1e-4);
                                }});
     for (int exponent = 0; exponent <= 7; ++exponent)
-        group.cases.push_back({"depth offset 1e" + std::to_string(exponent) + " m", "the same slope of 1 m, this far from the light's origin: z^2 must not cancel",
-                               "V is that of no offset within what float32 leaves of a metre there", [exponent](Mode mode, Probe& probe) {
-                                   const auto offset = float(std::pow(10.0, exponent));
-                                   const auto texel = [](int x, int) { return slope(x, 64); };
-                                   const Lrsm unit = buildLrsm(syntheticMap(64, texel), layerSettings(mode)), lrsm = buildLrsm(syntheticMap(64, texel, 1.0f, offset), layerSettings(mode));
-                                   probe.output("lrsm", lrsm);
-                                   ConeSettings cones = paperCones();
-                                   cones.rsmMinLevel = 3.0f;
-                                   double worst = 0.0;
-                                   for (float z = 0.05f; z < 1.0f; z += 0.05f)
-                                       worst = std::max(worst, std::abs(double(sampleAt(lrsm, 0.5f, 0.5f, z, 0.1f, cones).x) - double(sampleAt(unit, 0.5f, 0.5f, z, 0.1f, cones).x)));
-                                   // dV/dz <= phi(0) / sigma; sigma of the slope's footprint is at least 0.02 m.
-                                   probe.bound("difference of f A R V N", worst, 1e-5 + 40.0 * double(offset) * 0x1p-24);
-                               }});
+        group.cases.push_back(
+            {"depth offset 1e" + std::to_string(exponent) + " m", "the same slope of 1 m, this far from the light's origin: z^2 must not cancel",
+             "V is that of no offset within what float32 leaves of a metre there", [exponent](Mode mode, Probe& probe) {
+                 const auto offset = float(std::pow(10.0, exponent));
+                 const auto texel = [](int x, int) { return slope(x, 64); };
+                 const Lrsm unit = buildLrsm(syntheticMap(64, texel), layerSettings(mode)),
+                            lrsm = buildLrsm(syntheticMap(64, texel, 1.0f, offset), layerSettings(mode));
+                 probe.output("lrsm", lrsm);
+                 ConeSettings cones = paperCones();
+                 cones.rsmMinLevel = 3.0f;
+                 double worst = 0.0;
+                 for (float z = 0.05f; z < 1.0f; z += 0.05f)
+                     worst =
+                         std::max(worst, std::abs(double(sampleAt(lrsm, 0.5f, 0.5f, z, 0.1f, cones).x) - double(sampleAt(unit, 0.5f, 0.5f, z, 0.1f, cones).x)));
+                 // dV/dz <= phi(0) / sigma; sigma of the slope's footprint is at least 0.02 m.
+                 probe.bound("difference of f A R V N", worst, 1e-5 + 40.0 * double(offset) * 0x1p-24);
+             }});
     return group;
 }
 

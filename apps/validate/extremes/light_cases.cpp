@@ -1,13 +1,12 @@
+#include "apps/validate/extremes/worlds.h"
 #include "core/scene/light.h"
 #include "core/scene/shapes.h"
-#include "apps/validate/extremes/worlds.h"
 
 #include <cmath>
 
 // Lights and cameras where they should not be, and of every shape.
 namespace lrsm::extremes {
 namespace {
-
 
 template <class Change>
 Case finite(const std::string& name, const std::string& what, Change change)
@@ -23,13 +22,16 @@ Case finite(const std::string& name, const std::string& what, Change change)
 template <class Change>
 Case refused(const std::string& name, const std::string& what, Change change)
 {
-    return {name, what, "refused in one line",
+    return {name,
+            what,
+            "refused in one line",
             [change](Mode mode, Probe& probe) {
                 World world = room();
                 change(world);
                 probe.frame(renderWorld(world, smallSettings(mode)));
             },
-            true, true};
+            true,
+            true};
 }
 
 /// Nothing of the scene is lit: no direct light, no indirect light.
@@ -45,7 +47,10 @@ Case dark(const std::string& name, const std::string& what, Change change)
             }};
 }
 
-Light& light(World& world) { return world.scene.lights[0]; }
+Light& light(World& world)
+{
+    return world.scene.lights[0];
+}
 
 /// The wall's middle sends rho I / (pi d^2).
 void onAxis(Mode mode, Probe& probe, float distance, float inner, float outer)
@@ -107,7 +112,8 @@ Group lightCases()
     for (const float outer : {0.5f, 1.0f, 30.0f, 85.0f, 89.0f}) {
         char name[32];
         std::snprintf(name, sizeof name, "a spot of %g degrees", 2.0 * double(outer));
-        cases.push_back({name, "a spot of this full angle on a wall 1 m away, smooth to its edge", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
+        cases.push_back({name, "a spot of this full angle on a wall 1 m away, smooth to its edge",
+                         "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
                          [outer](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 0.5f * outer, outer); }});
     }
     for (const float distance : {1e-6f, 1e-3f, 1e3f, 1e6f, 1e12f}) {
@@ -116,7 +122,8 @@ Group lightCases()
         cases.push_back({name, "a wall of 2 m under a spot of 60 degrees at this distance", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
                          [distance](Mode mode, Probe& probe) { onAxis(mode, probe, distance, 20.0f, 30.0f); }});
     }
-    cases.push_back({"inner and outer angle equal", "a spot with a sharp edge", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4", [](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 30.0f, 30.0f); }});
+    cases.push_back({"inner and outer angle equal", "a spot with a sharp edge", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
+                     [](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 30.0f, 30.0f); }});
     cases.push_back({"two coincident lights", "the room's light twice", "twice the light of one", [](Mode mode, Probe& probe) { coincident(mode, probe, 2); }});
     cases.push_back({"a thousand lights", "the room's light 1000 times, RSMs of 4^2", "a thousand times the light of one", [](Mode mode, Probe& probe) {
                          World world = room();
@@ -135,38 +142,52 @@ Group lightCases()
         cases.push_back({name, "a wall under a sun that all but misses it: 1/<n.l> of Eq. 4 runs off", "RSM radiance is rho E <n.l> / pi; every pass finite",
                          [nDotL](Mode mode, Probe& probe) { grazing(mode, probe, nDotL); }});
     }
-    cases.push_back(dark("facing away", "a spot outside the room that looks the other way", [](World& w) { light(w) = spotLight(Vec3(0, 5, 0), Vec3(0, 9, 0), Vec3(4.0f), 0.3f, 0.5f); }));
+    cases.push_back(dark("facing away", "a spot outside the room that looks the other way",
+                         [](World& w) { light(w) = spotLight(Vec3(0, 5, 0), Vec3(0, 9, 0), Vec3(4.0f), 0.3f, 0.5f); }));
     cases.push_back(dark("intensity 0", "a light of no intensity", [](World& w) { light(w).intensity = Vec3(0.0f); }));
     cases.push_back(dark("no light", "a scene without lights", [](World& w) { w.scene.lights.clear(); }));
     cases.push_back(dark("range of 1e-12 m", "all geometry lies beyond the light's range", [](World& w) { light(w).range = 1e-12f; }));
-    cases.push_back(dark("all geometry behind the light", "a spot in the floor's plane that looks down", [](World& w) { light(w) = spotLight(Vec3(0, -1.001f, 0), Vec3(0, -5, 0), Vec3(4.0f), 0.3f, 0.5f); }));
-    cases.push_back(finite("on a surface", "a spot in the floor, looking up", [](World& w) { light(w) = spotLight(Vec3(0.3f, -1, 0.2f), Vec3(0.3f, 1, 0.2f), Vec3(4.0f), 0.3f, 0.8f); }));
-    cases.push_back(finite("on a vertex", "a spot in the room's corner", [](World& w) { light(w) = spotLight(Vec3(-1.0f), Vec3(1.0f), Vec3(4.0f), 0.3f, 0.8f); }));
-    cases.push_back(finite("a hair above the floor", "a spot 1e-7 m from the surface it lights", [](World& w) { light(w) = spotLight(Vec3(0.3f, -1.0f + 1.2e-7f, 0.2f), Vec3(0.3f, -2, 0.2f), Vec3(4.0f), 0.3f, 0.8f); }));
+    cases.push_back(dark("all geometry behind the light", "a spot in the floor's plane that looks down",
+                         [](World& w) { light(w) = spotLight(Vec3(0, -1.001f, 0), Vec3(0, -5, 0), Vec3(4.0f), 0.3f, 0.5f); }));
+    cases.push_back(finite("on a surface", "a spot in the floor, looking up",
+                           [](World& w) { light(w) = spotLight(Vec3(0.3f, -1, 0.2f), Vec3(0.3f, 1, 0.2f), Vec3(4.0f), 0.3f, 0.8f); }));
+    cases.push_back(
+        finite("on a vertex", "a spot in the room's corner", [](World& w) { light(w) = spotLight(Vec3(-1.0f), Vec3(1.0f), Vec3(4.0f), 0.3f, 0.8f); }));
+    cases.push_back(finite("a hair above the floor", "a spot 1e-7 m from the surface it lights",
+                           [](World& w) { light(w) = spotLight(Vec3(0.3f, -1.0f + 1.2e-7f, 0.2f), Vec3(0.3f, -2, 0.2f), Vec3(4.0f), 0.3f, 0.8f); }));
     cases.push_back(finite("at the eye", "light and camera at one point", [](World& w) { light(w).position = w.camera.position; }));
     cases.push_back(finite("at the point seen", "a light exactly where the middle pixel's surface is", [](World& w) {
         light(w) = spotLight(Vec3(0.0f, -1.0f, 0.0f), Vec3(0, 1, 0), Vec3(1e12f, 0, 1), 0.3f, 0.8f);
         w.camera = lookAt(Vec3(0, 0.5f, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), 1.0f);
     }));
-    cases.push_back(finite("point light at the centre", "six cube faces", [](World& w) { w.scene.lights = splitPointLight(Vec3(0.0f), Vec3(4.0f), kInfinity, "point"); }));
-    cases.push_back(finite("point light in a corner", "six cube faces, three of which see nothing", [](World& w) { w.scene.lights = splitPointLight(Vec3(1.0f), Vec3(4.0f), kInfinity, "point"); }));
-    cases.push_back(finite("sun along an axis", "a directional light exactly along -y", [](World& w) { light(w) = directionalLight(Vec3(0, -1, 0), Vec3(10.0f)); }));
+    cases.push_back(
+        finite("point light at the centre", "six cube faces", [](World& w) { w.scene.lights = splitPointLight(Vec3(0.0f), Vec3(4.0f), kInfinity, "point"); }));
+    cases.push_back(finite("point light in a corner", "six cube faces, three of which see nothing",
+                           [](World& w) { w.scene.lights = splitPointLight(Vec3(1.0f), Vec3(4.0f), kInfinity, "point"); }));
+    cases.push_back(
+        finite("sun along an axis", "a directional light exactly along -y", [](World& w) { light(w) = directionalLight(Vec3(0, -1, 0), Vec3(10.0f)); }));
     cases.push_back(finite("sun off an axis by 1e-7", "a directional light all but along -y on a flat scene", [](World& w) {
         light(w) = directionalLight(Vec3(1e-7f, -1, 1e-8f), Vec3(10.0f));
-        for (Mesh& m : w.scene.meshes) for (Vec3& p : m.positions) p.y = 0.1f;
+        for (Mesh& m : w.scene.meshes)
+            for (Vec3& p : m.positions) p.y = 0.1f;
         updateBounds(w.scene);
     }));
     cases.push_back(finite("intensity 1e30", "a spot of 1e30 W/sr: irradiance is capped at 1e20 W/m^2", [](World& w) { light(w).intensity = Vec3(1e30f); }));
     cases.push_back(finite("intensity 3e38", "a spot of the largest float", [](World& w) { light(w).intensity = Vec3(3.4e38f, 0, 1e-45f); }));
-    cases.push_back(finite("sun of 3e38", "a directional light of the largest float", [](World& w) { light(w) = directionalLight(Vec3(0.2f, -1, 0.1f), Vec3(3.4e38f)); }));
+    cases.push_back(
+        finite("sun of 3e38", "a directional light of the largest float", [](World& w) { light(w) = directionalLight(Vec3(0.2f, -1, 0.1f), Vec3(3.4e38f)); }));
     cases.push_back(finite("range of 1e30 m", "a range far beyond the scene", [](World& w) { light(w).range = 1e30f; }));
-    cases.push_back(finite("up nearly along the axis", "a light frame made from an axis close to y", [](World& w) { light(w) = spotLight(Vec3(0, 0.9f, 0), Vec3(1e-6f, -1, 0), Vec3(4.0f), 0.3f, 0.8f); }));
+    cases.push_back(finite("up nearly along the axis", "a light frame made from an axis close to y",
+                           [](World& w) { light(w) = spotLight(Vec3(0, 0.9f, 0), Vec3(1e-6f, -1, 0), Vec3(4.0f), 0.3f, 0.8f); }));
     for (const float value : {-1.0f, kNan, kInfinity})
         cases.push_back(refused("intensity " + std::to_string(value), "of one channel", [value](World& w) { light(w).intensity.y = value; }));
-    cases.push_back(refused("inner angle beyond outer", "inner 0.6, outer 0.5 rad", [](World& w) { light(w).innerConeAngle = 0.6f, light(w).outerConeAngle = 0.5f; }));
+    cases.push_back(
+        refused("inner angle beyond outer", "inner 0.6, outer 0.5 rad", [](World& w) { light(w).innerConeAngle = 0.6f, light(w).outerConeAngle = 0.5f; }));
     for (const float degrees : {89.6f, 90.0f, 91.0f, 180.0f, 0.0f, -5.0f})
-        cases.push_back(refused("outer angle of " + std::to_string(int(degrees * 10.0f)) + " tenths of a degree", "from the axis", [degrees](World& w) { light(w).innerConeAngle = 0.0f, light(w).outerConeAngle = degrees * kDegree; }));
-    cases.push_back(refused("target at the light", "a spot whose target is its position", [](World& w) { light(w) = spotLight(Vec3(0.5f), Vec3(0.5f), Vec3(1.0f), 0.3f, 0.5f); }));
+        cases.push_back(refused("outer angle of " + std::to_string(int(degrees * 10.0f)) + " tenths of a degree", "from the axis",
+                                [degrees](World& w) { light(w).innerConeAngle = 0.0f, light(w).outerConeAngle = degrees * kDegree; }));
+    cases.push_back(refused("target at the light", "a spot whose target is its position",
+                            [](World& w) { light(w) = spotLight(Vec3(0.5f), Vec3(0.5f), Vec3(1.0f), 0.3f, 0.5f); }));
     cases.push_back(refused("direction 0", "a sun that goes nowhere", [](World& w) { light(w) = directionalLight(Vec3(0.0f), Vec3(1.0f)); }));
     cases.push_back(refused("position NaN", "one coordinate", [](World& w) { light(w).position.x = kNan; }));
     cases.push_back(refused("range 0", "no range", [](World& w) { light(w).range = 0.0f; }));
@@ -180,7 +201,8 @@ Group cameraCases()
     Group group{"camera", {}};
     auto& cases = group.cases;
     cases.push_back(finite("inside a wall", "the eye in the block", [=](World& w) { w.camera = lookAt(Vec3(-0.4f, -0.6f, -0.2f), Vec3(1, 0, 0), up, 1.0f); }));
-    cases.push_back(finite("in a wall's plane", "the eye exactly in the floor", [=](World& w) { w.camera = lookAt(Vec3(0, -1, 0.9f), Vec3(0, -1, -1), up, 1.0f); }));
+    cases.push_back(
+        finite("in a wall's plane", "the eye exactly in the floor", [=](World& w) { w.camera = lookAt(Vec3(0, -1, 0.9f), Vec3(0, -1, -1), up, 1.0f); }));
     cases.push_back(finite("on a vertex", "the eye in the room's corner", [=](World& w) { w.camera = lookAt(Vec3(-1.0f), Vec3(1.0f), up, 1.0f); }));
     cases.push_back(finite("field of view 0.1 degrees", "", [=](World& w) { w.camera.verticalFov = 0.1f * kDegree; }));
     cases.push_back(finite("field of view 179 degrees", "", [=](World& w) { w.camera.verticalFov = 179.0f * kDegree; }));
@@ -195,17 +217,19 @@ Group cameraCases()
         w.camera.nearPlane = 1e3f;
     }));
     const auto pictures = [](const std::string& name, int width, int height) {
-        return Case{name, "the room in a picture of this size", "every pass finite", [=](Mode mode, Probe& probe) {
-                        probe.frame(renderWorld(room(true), smallSettings(mode), width, height));
-                    }};
+        return Case{name, "the room in a picture of this size", "every pass finite",
+                    [=](Mode mode, Probe& probe) { probe.frame(renderWorld(room(true), smallSettings(mode), width, height)); }};
     };
     cases.push_back(pictures("picture of 1x1", 1, 1));
     cases.push_back(pictures("picture of 1x300", 1, 300));
     cases.push_back(pictures("picture of 300x1", 300, 1));
     cases.push_back(pictures("picture of 17x13", 17, 13));
-    cases.push_back({"picture of 0x0", "no pixel", "refused in one line", [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 0, 0)); }, true, true});
-    cases.push_back({"picture of -1x5", "a negative side", "refused in one line", [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), -1, 5)); }, true, true});
-    cases.push_back({"picture of 20000x1", "more than 16384", "refused in one line", [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 20000, 1)); }, true, true});
+    cases.push_back({"picture of 0x0", "no pixel", "refused in one line",
+                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 0, 0)); }, true, true});
+    cases.push_back({"picture of -1x5", "a negative side", "refused in one line",
+                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), -1, 5)); }, true, true});
+    cases.push_back({"picture of 20000x1", "more than 16384", "refused in one line",
+                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 20000, 1)); }, true, true});
     for (const float fov : {0.0f, 180.0f, -10.0f, 400.0f, kNan})
         cases.push_back(refused("field of view " + std::to_string(fov), "degrees", [=](World& w) { w.camera.verticalFov = fov * kDegree; }));
     cases.push_back(refused("eye at the target", "no direction", [=](World& w) { w.camera = lookAt(Vec3(0.5f), Vec3(0.5f), up, 1.0f); }));

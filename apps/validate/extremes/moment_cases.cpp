@@ -1,5 +1,5 @@
-#include "lrsm/sample.h"
 #include "apps/validate/extremes/catalogue.h"
+#include "lrsm/sample.h"
 
 #include <cmath>
 
@@ -109,8 +109,8 @@ Group momentCases()
              visibilityCase("r_c to 0", "r_c = 0, 1e-45, 1e-38, 1e-20, 1e-8", radii({0.0f, least, smallest, 1e-20f, 1e-8f})),
              visibilityCase("r_c larger than the scene", "r_c = 1, 1e3, 1e10, 1e30", radii({1.0f, 1e3f, 1e10f, 1e30f})),
              visibilityCase("depths far from 0", "mu = 1 .. 1e7, differences of a metre", farPlaces()),
-             {"alpha to 0", "depthMoments and N of a texel whose alpha is 0, denormal or tiny", "mean of equal depths is that depth; N of a normal of length 0 is 0; all finite",
-              momentsOfNothing, true}}};
+             {"alpha to 0", "depthMoments and N of a texel whose alpha is 0, denormal or tiny",
+              "mean of equal depths is that depth; N of a normal of length 0 is 0; all finite", momentsOfNothing, true}}};
 }
 
 }  // namespace lrsm::extremes

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lrsm/sample.h"
 #include "apps/validate/extremes/catalogue.h"
+#include "lrsm/sample.h"
 
 namespace lrsm::extremes {
 

@@ -1,15 +1,14 @@
 #include "apps/validate/extremes/worlds.h"
 
-#include "core/settings/settings_table.h"
 #include "core/scene/light.h"
 #include "core/scene/requirements.h"
 #include "core/scene/shapes.h"
+#include "core/settings/settings_table.h"
 
 #include <cmath>
 
 namespace lrsm::extremes {
 namespace {
-
 
 void apply(Settings& settings, Mode mode)
 {
@@ -71,9 +70,15 @@ World room(bool specular)
     return world;
 }
 
-World scaledRoom(double factor) { return transformed(room(), factor, glm::dvec3(0.0)); }
+World scaledRoom(double factor)
+{
+    return transformed(room(), factor, glm::dvec3(0.0));
+}
 
-World movedRoom(const glm::dvec3& offset) { return transformed(room(), 1.0, offset); }
+World movedRoom(const glm::dvec3& offset)
+{
+    return transformed(room(), 1.0, offset);
+}
 
 World litWall(float distance, float innerConeDegrees, float outerConeDegrees)
 {
@@ -82,8 +87,7 @@ World litWall(float distance, float innerConeDegrees, float outerConeDegrees)
     world.scene.materials = {diffuseMaterial("wall", Vec3(0.5f), true)};
     world.scene.meshes.resize(1);
     addQuad(world.scene.meshes[0], Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0));
-    world.scene.lights.push_back(
-        spotLight(Vec3(0, 0, distance), Vec3(0.0f), Vec3(1.0f), innerConeDegrees * kDegree, outerConeDegrees * kDegree));
+    world.scene.lights.push_back(spotLight(Vec3(0, 0, distance), Vec3(0.0f), Vec3(1.0f), innerConeDegrees * kDegree, outerConeDegrees * kDegree));
     world.camera = lookAt(Vec3(0, 0, 3), Vec3(0.0f), Vec3(0, 1, 0), 30.0f * kDegree);
     updateBounds(world.scene);
     return world;

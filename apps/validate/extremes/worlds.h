@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/scene/scene.h"
 #include "apps/validate/extremes/catalogue.h"
+#include "core/scene/scene.h"
 
 #include <limits>
 

@@ -107,8 +107,7 @@ std::uint64_t lookupKey(std::uint32_t pixel, int cone, int step, std::uint64_t s
     return (std::uint64_t(words[0]) << 32) | words[1];
 }
 
-SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, std::size_t count,
-                          std::uint64_t seed)
+SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, std::size_t count, std::uint64_t seed)
 {
     const bool slab = world.settings.estimator == Estimator::slab;
     const std::size_t pixels = gbuffer.position.texels.size();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "conetrace/lrsm/gather_setup.h"
 #include "conetrace/frame/gbuffer.h"
+#include "conetrace/lrsm/gather_setup.h"
 
 #include <cstdint>
 
@@ -16,10 +16,10 @@ struct RecordedSample {
     ConeSample sphere;
     ConeRay ray;
     float tanHalf = 0.0f;
-    float coneWeight = 0.0f;        ///< of its cone; a pixel's diffuse cones sum to 1, a specular cone is 1
+    float coneWeight = 0.0f;           ///< of its cone; a pixel's diffuse cones sum to 1, a specular cone is 1
     const MarchStep* steps = nullptr;  ///< of the cone's schedule, up to and including `step`: owned by the GatherPlan
-    double before = 1.0;  ///< transmittance in front of the step's segment, as the march computed it
-    double after = 1.0;   ///< and behind it
+    double before = 1.0;               ///< transmittance in front of the step's segment, as the march computed it
+    double after = 1.0;                ///< and behind it
 };
 
 struct SampledFrame {
@@ -32,7 +32,6 @@ std::uint64_t lookupKey(std::uint32_t pixel, int cone, int step, std::uint64_t s
 
 /// Runs the gather of every covered pixel and keeps the `count` lookups with the smallest keys: a uniform draw without replacement, since keys are
 /// independent of what is drawn. Same samples for any number of threads. `plan` and `world` must outlive the result.
-SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, std::size_t count,
-                          std::uint64_t seed);
+SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, std::size_t count, std::uint64_t seed);
 
 }  // namespace lrsm

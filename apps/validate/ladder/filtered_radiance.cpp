@@ -14,8 +14,9 @@ glm::dvec3 filteredRadiance(const Lrsm& lrsm, const ConeSample& sample, const Co
     glm::dvec3 sum(0.0);
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
         const LayerRange& range = lrsm.ranges[std::size_t(layer)];
-        const double share = terms.selection == LayerSelection::centre ? double(decay(range, at.depth))
-                                                                       : touches(range, at.depth, static_cast<float>(window)) ? 1.0 : 0.0;
+        const double share = terms.selection == LayerSelection::centre              ? double(decay(range, at.depth))
+                             : touches(range, at.depth, static_cast<float>(window)) ? 1.0
+                                                                                    : 0.0;
         if (!(share > 0.0)) continue;
         const FilteredTexel texel = sampleLayer(lrsm, layer, footprint);
         if (!(texel.depthAlpha > 0.0f && texel.normalAlpha > 0.0f)) continue;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lrsm/sample.h"
 #include "apps/validate/ladder/light_footprint.h"
+#include "lrsm/sample.h"
 
 namespace lrsm {
 

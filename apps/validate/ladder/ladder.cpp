@@ -1,12 +1,12 @@
 #include "apps/validate/ladder/ladder.h"
 
-#include "core/base/errors.h"
-#include "core/base/parallel.h"
 #include "apps/validate/ladder/cone_opacity.h"
 #include "apps/validate/ladder/filtered_radiance.h"
 #include "apps/validate/ladder/ladder_statistics.h"
 #include "apps/validate/ladder/light_footprint.h"
 #include "apps/validate/ladder/segment_emission.h"
+#include "core/base/errors.h"
+#include "core/base/parallel.h"
 #include "voxel/voxelize.h"
 
 #include <chrono>
@@ -19,9 +19,9 @@ using glm::dvec3;
 
 /// One light at every stage of its way from texels to stored layers.
 struct LadderLight {
-    Rsm rsm;          ///< float32
+    Rsm rsm;  ///< float32
     LayerModel model;
-    Lrsm wide;        ///< float32
+    Lrsm wide;  ///< float32
 };
 
 /// Appends what the frame has to `stored`.
@@ -47,9 +47,13 @@ double meanOf(const dvec3& rgb)
 class LadderWorld {
   public:
     LadderWorld(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const LadderOptions& options)
-        : settings_(settings), options_(options), side_(std::max(2, static_cast<int>(std::ceil(std::sqrt(double(options.raysPerSample)))))),
-          opacity_(buildPyramid(voxelize(scene, settings.voxel), settings.voxel)), embree_(scene),
-          gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height})), plan_(planGather(opacity_, needs, settings.cones))
+        : settings_(settings),
+          options_(options),
+          side_(std::max(2, static_cast<int>(std::ceil(std::sqrt(double(options.raysPerSample)))))),
+          opacity_(buildPyramid(voxelize(scene, settings.voxel), settings.voxel)),
+          embree_(scene),
+          gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height})),
+          plan_(planGather(opacity_, needs, settings.cones))
     {
         for (const Light& light : scene.lights) {
             samplers_.emplace_back(light);
@@ -160,8 +164,9 @@ std::vector<std::string> notesOn(const Settings& settings)
     const ConeSettings& cones = settings.cones;
     std::vector<std::string> notes;
     if (cones.estimator == Estimator::slab)
-        notes.push_back("estimator=slab gathers a segment's emission, not a sphere's L: the first ladder evaluates Algorithm 1 at the spheres of the steps where "
-                        "slab looks light up, weighed by the opacity that the step adds; the third is what the segments emit");
+        notes.push_back(
+            "estimator=slab gathers a segment's emission, not a sphere's L: the first ladder evaluates Algorithm 1 at the spheres of the steps where "
+            "slab looks light up, weighed by the opacity that the step adds; the third is what the segments emit");
     if (cones.backface != Backface::cosine) notes.push_back("N of Eq. 8 is taken as `backface` says from rung Eq. 5-8 on, not as the printed cosine");
     if (cones.layerSelection == LayerSelection::touched)
         notes.push_back("layer_selection=touched: rung Eq. 15 adds every layer that the sphere touches, without decay");
@@ -246,8 +251,7 @@ LadderScene climbLadder(const Scene& scene, const Camera& camera, const Requirem
     const LadderWorld world(scene, camera, needs, settings, options);
     tell("samples", 0.2);
     const SampledFrame drawn = world.draw(camera);
-    if (drawn.samples.empty())
-        throw InputError(scene.name, "the frame looks up no light: nothing is in view, or no cone meets a voxel; try another camera");
+    if (drawn.samples.empty()) throw InputError(scene.name, "the frame looks up no light: nothing is in view, or no cone meets a voxel; try another camera");
 
     LadderScene result;
     result.scene = scene.name;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/settings/settings.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 
 #include <cstdint>
 #include <functional>
@@ -46,22 +46,22 @@ struct LadderOptions {
 
 /// One cone sample and what each rung says of it. Radiances are means of the three channels, W/(m^2 sr).
 struct LadderSample {
-    int x = 0, y = 0;         ///< pixel
-    int cone = 0, step = 0;   ///< numbered as `lrsm render --pixel` prints them; the specular cone comes last
-    Vec3 centre{0.0f};        ///< x_c, world
-    Vec3 toReceiver{0.0f};    ///< v_c
-    float radius = 0.0f;      ///< r_c, metres
-    float distance = 0.0f;    ///< from the cone's apex, metres
-    double weight = 0.0;      ///< share of L in the weighted mean of its pixel's cones: cone weight * transmittance * alpha
+    int x = 0, y = 0;             ///< pixel
+    int cone = 0, step = 0;       ///< numbered as `lrsm render --pixel` prints them; the specular cone comes last
+    Vec3 centre{0.0f};            ///< x_c, world
+    Vec3 toReceiver{0.0f};        ///< v_c
+    float radius = 0.0f;          ///< r_c, metres
+    float distance = 0.0f;        ///< from the cone's apex, metres
+    double weight = 0.0;          ///< share of L in the weighted mean of its pixel's cones: cone weight * transmittance * alpha
     double emissionWeight = 0.0;  ///< the same without alpha, for what a segment emits
     // Of the light that gives the sample most (the first where none gives any).
-    double level = 0.0;       ///< LRSM level of the footprint, before clamping
-    double slope = 1.0;       ///< mean <n.l> of the RSM texels inside the sphere; of all in its footprint where none is inside
-    double lightCosine = 0.0; ///< l . v_c at x_c: below 0 the receiver looks from behind at what faces the light
-    int layers = 0;           ///< layers that rung Eq. 15 samples and finds light in
-    double voxelLevel = 0.0;  ///< mip level of the step's voxel lookup
-    bool hasSurface = false;  ///< some ray of Eq. 2 met a surface inside the sphere: L is defined
-    double noise = 0.0;       ///< estimated standard deviation of the rung Eq. 2
+    double level = 0.0;        ///< LRSM level of the footprint, before clamping
+    double slope = 1.0;        ///< mean <n.l> of the RSM texels inside the sphere; of all in its footprint where none is inside
+    double lightCosine = 0.0;  ///< l . v_c at x_c: below 0 the receiver looks from behind at what faces the light
+    int layers = 0;            ///< layers that rung Eq. 15 samples and finds light in
+    double voxelLevel = 0.0;   ///< mip level of the step's voxel lookup
+    bool hasSurface = false;   ///< some ray of Eq. 2 met a surface inside the sphere: L is defined
+    double noise = 0.0;        ///< estimated standard deviation of the rung Eq. 2
     double radiance[kRadianceRungs] = {};
     double opacity[kVisibilityRungs] = {};
     double emission[kEmissionRungs] = {};  ///< estimator=slab; else 0
@@ -72,8 +72,8 @@ struct DifferenceStatistics {
     double mean = 0.0;  ///< signed
     double rms = 0.0;
     double p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;  ///< percentiles of |difference|
-    double weightedMean = 0.0;  ///< signed, each sample counted by LadderSample::weight (emissionWeight): what the picture's energy sees
-    std::vector<double> quantiles;  ///< signed difference at ladderProbabilities()
+    double weightedMean = 0.0;           ///< signed, each sample counted by LadderSample::weight (emissionWeight): what the picture's energy sees
+    std::vector<double> quantiles;       ///< signed difference at ladderProbabilities()
     std::vector<std::size_t> histogram;  ///< counts of the signed difference in the bins of `LadderScene`'s edges for this ladder
 };
 /// 0, .01, .05, .1, .25, .5, .75, .9, .95, .99, 1.
@@ -81,10 +81,10 @@ const std::vector<double>& ladderProbabilities();
 
 struct RungStatistics {
     std::string name, meaning;
-    double mean = 0.0;          ///< of the rung's value
-    double weightedMean = 0.0;  ///< the same by LadderSample::weight
+    double mean = 0.0;                    ///< of the rung's value
+    double weightedMean = 0.0;            ///< the same by LadderSample::weight
     DifferenceStatistics toAbove, toTop;  ///< rung minus the rung above; minus the top rung (Eq. 2, exact rays). All 0 for the top itself
-    double share = 0.0;         ///< toAbove.rms^2 over the sum of all rungs' : how much of the error enters here
+    double share = 0.0;                   ///< toAbove.rms^2 over the sum of all rungs' : how much of the error enters here
 };
 
 /// One bin of a curve: the samples whose variable lies in [low, high).
@@ -111,26 +111,26 @@ struct Ladder {
     std::vector<RungStatistics> rungs;   ///< top first
     std::vector<double> histogramEdges;  ///< symmetric about 0; the first and last bins also hold what lies beyond
     std::vector<LadderCurve> curves;
-    std::vector<WorstCase> worst;        ///< worstPerRung for each rung, then worstPerRung of the whole way
-    std::size_t samples = 0;             ///< that the statistics are over
-    std::string verdict;                 ///< one sentence: where most of the error enters, with its figures
+    std::vector<WorstCase> worst;  ///< worstPerRung for each rung, then worstPerRung of the whole way
+    std::size_t samples = 0;       ///< that the statistics are over
+    std::string verdict;           ///< one sentence: where most of the error enters, with its figures
 };
 
 struct LadderScene {
     std::string scene;
-    int width = 0, height = 0;  ///< as sampled
-    Ladder radiance;    ///< over the samples that have a surface
-    Ladder visibility;  ///< over all samples
-    Ladder emission;    ///< over all samples with estimator=slab; else without rungs
+    int width = 0, height = 0;          ///< as sampled
+    Ladder radiance;                    ///< over the samples that have a surface
+    Ladder visibility;                  ///< over all samples
+    Ladder emission;                    ///< over all samples with estimator=slab; else without rungs
     std::vector<LadderSample> samples;  ///< in order of pixel, cone, step
-    std::uint64_t lookups = 0;      ///< LRSM lookups of the frame: each was taken with probability samples.size() / lookups
-    std::size_t withoutSurface = 0; ///< samples in whose sphere no ray of Eq. 2 meets a surface: L is undefined and they are in no radiance statistic
-    double lightFromNothing = 0.0;  ///< their part in the weighted sum of the last rung's L: light that the frame takes from empty spheres
-    double noise = 0.0;             ///< rms over samples of LadderSample::noise
+    std::uint64_t lookups = 0;          ///< LRSM lookups of the frame: each was taken with probability samples.size() / lookups
+    std::size_t withoutSurface = 0;     ///< samples in whose sphere no ray of Eq. 2 meets a surface: L is undefined and they are in no radiance statistic
+    double lightFromNothing = 0.0;      ///< their part in the weighted sum of the last rung's L: light that the frame takes from empty spheres
+    double noise = 0.0;                 ///< rms over samples of LadderSample::noise
     double seconds = 0.0;
-    std::vector<std::string> notes; ///< what the settings make different from the paper's ladder, one sentence each
+    std::vector<std::string> notes;  ///< what the settings make different from the paper's ladder, one sentence each
 
-    std::string verdict;            ///< the scene's name and all ladders' verdicts
+    std::string verdict;  ///< the scene's name and all ladders' verdicts
 };
 
 /// Samples the gather of the frame that `renderFrame` makes of the same arguments and climbs both ladders at each sample.

@@ -103,8 +103,7 @@ LadderCurve describeCurve(const LadderView& view, const LadderView::Variable& va
     return curve;
 }
 
-void addWorst(Ladder& ladder, const std::string& rung, bool toTop, const std::vector<double>& differences, const std::vector<std::size_t>& included,
-              int count)
+void addWorst(Ladder& ladder, const std::string& rung, bool toTop, const std::vector<double>& differences, const std::vector<std::size_t>& included, int count)
 {
     std::vector<std::size_t> order(differences.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
@@ -119,8 +118,8 @@ void addWorst(Ladder& ladder, const std::string& rung, bool toTop, const std::ve
 
 std::string verdictOf(const LadderView& view, const Ladder& ladder)
 {
-    const auto worst = std::max_element(ladder.rungs.begin(), ladder.rungs.end(),
-                                        [](const RungStatistics& a, const RungStatistics& b) { return a.share < b.share; });
+    const auto worst =
+        std::max_element(ladder.rungs.begin(), ladder.rungs.end(), [](const RungStatistics& a, const RungStatistics& b) { return a.share < b.share; });
     const RungStatistics &top = ladder.rungs.front(), &last = ladder.rungs.back();
     if (!(worst->share > 0.0)) return "All rungs agree on " + view.quantity + ".";
     const RungStatistics& above = *(worst - 1);

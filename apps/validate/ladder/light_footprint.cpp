@@ -9,11 +9,11 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kLeastAcross = 16.0;     // texels (or parts of texels) across the sphere
-constexpr double kMostAcross = 384.0;     // beyond, one texel stands for a block
-constexpr int kVisibilityBlocks = 32;     // across the footprint
-constexpr double kLeastCosine = 1e-3;     // of <n.l> in Eq. 4
-constexpr double kBesideMap = 1.0;        // map widths beyond the border that still count as Omega
+constexpr double kLeastAcross = 16.0;  // texels (or parts of texels) across the sphere
+constexpr double kMostAcross = 384.0;  // beyond, one texel stands for a block
+constexpr int kVisibilityBlocks = 32;  // across the footprint
+constexpr double kLeastCosine = 1e-3;  // of <n.l> in Eq. 4
+constexpr double kBesideMap = 1.0;     // map widths beyond the border that still count as Omega
 
 struct Interval {
     double low, high;
@@ -23,8 +23,14 @@ struct Interval {
 class LightRays {
   public:
     explicit LightRays(const LightProjection& p)
-        : directional_(p.type == LightType::directional), origin_(p.position), right_(p.right), up_(p.up), forward_(p.forward),
-          half_(double(p.halfWidth)), near_(double(p.depthNear)), range_(double(p.depthFar) - double(p.depthNear))
+        : directional_(p.type == LightType::directional),
+          origin_(p.position),
+          right_(p.right),
+          up_(p.up),
+          forward_(p.forward),
+          half_(double(p.halfWidth)),
+          near_(double(p.depthNear)),
+          range_(double(p.depthFar) - double(p.depthNear))
     {
     }
 
@@ -89,8 +95,12 @@ class LightRays {
 class LocalVisibility {
   public:
     LocalVisibility(const EmbreeScene* embree, const CoveredSphere& sphere, int across, double texelMetres)
-        : embree_(embree), sphere_(sphere), block_(std::max(1, (across + kVisibilityBlocks - 1) / kVisibilityBlocks)), edge_(across / block_ + 1),
-          off_(texelMetres / 64.0), known_(embree ? std::size_t(edge_) * std::size_t(edge_) : 0, kUnknown)
+        : embree_(embree),
+          sphere_(sphere),
+          block_(std::max(1, (across + kVisibilityBlocks - 1) / kVisibilityBlocks)),
+          edge_(across / block_ + 1),
+          off_(texelMetres / 64.0),
+          known_(embree ? std::size_t(edge_) * std::size_t(edge_) : 0, kUnknown)
     {
     }
     bool operator()(int i, int j, const dvec3& x, const dvec3& n)
@@ -158,10 +168,17 @@ struct Lattice {
 class FootprintPass {
   public:
     FootprintPass(const Rsm& rsm, const LayerModel& layers, const TermSettings& terms, const CoveredSphere& sphere, const EmbreeScene* embree)
-        : rsm_(rsm), layers_(layers), terms_(terms), sphere_(sphere), rays_(rsm.projection), lattice_(rays_, sphere, rsm.projection.resolution),
-          visible_(embree, sphere, lattice_.longest(), lattice_.texelMetres), zc_(rays_.metresOf(sphere.centre)),
+        : rsm_(rsm),
+          layers_(layers),
+          terms_(terms),
+          sphere_(sphere),
+          rays_(rsm.projection),
+          lattice_(rays_, sphere, rsm.projection.resolution),
+          visible_(embree, sphere, lattice_.longest(), lattice_.texelMetres),
+          zc_(rays_.metresOf(sphere.centre)),
           chosen_(layers.select(rays_.depthOf(zc_), sphere.radius * terms.vRadiusScale / rays_.range(), terms.selection)),
-          parts_(std::size_t(layers.depthSlices() * layers.normalSlices())), selected_(chosen_.size() * std::size_t(layers.normalSlices()))
+          parts_(std::size_t(layers.depthSlices() * layers.normalSlices())),
+          selected_(chosen_.size() * std::size_t(layers.normalSlices()))
     {
     }
 
@@ -246,9 +263,9 @@ class FootprintPass {
     double zc_;
     std::vector<SelectedSlice> chosen_;
 
-    double omega_ = 0.0;        ///< all of it
-    dvec3 litSurface_{0.0};     ///< Eq. 3, numerator
-    double surface_ = 0.0;      ///< and denominator
+    double omega_ = 0.0;     ///< all of it
+    dvec3 litSurface_{0.0};  ///< Eq. 3, numerator
+    double surface_ = 0.0;   ///< and denominator
     double inside_ = 0.0, insideSlope_ = 0.0, slope_ = 0.0;
     std::vector<TexelSums> parts_;     ///< Eq. 13's layers, a partition
     std::vector<TexelSums> selected_;  ///< Eq. 15's
@@ -281,8 +298,7 @@ double gaussianShare(double distance, double variance, double radius)
     return 0.5 * (std::erfc((d - radius) * scale) - std::erfc((d + radius) * scale));
 }
 
-FootprintRadiance footprintRadiance(const Rsm& rsm, const LayerModel& layers, const TermSettings& terms, const CoveredSphere& sphere,
-                                    const EmbreeScene* embree)
+FootprintRadiance footprintRadiance(const Rsm& rsm, const LayerModel& layers, const TermSettings& terms, const CoveredSphere& sphere, const EmbreeScene* embree)
 {
     FootprintPass pass(rsm, layers, terms, sphere, embree);
     pass.run();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "reference/embree_scene.h"
 #include "apps/validate/ladder/layer_model.h"
+#include "reference/embree_scene.h"
 
 #include <glm/glm.hpp>
 
@@ -11,18 +11,18 @@ namespace lrsm {
 
 /// Sums over texels, weighted by solid angle (w of Eq. 9 is a box over the sphere's Omega).
 struct TexelSums {
-    double weight = 0.0;            ///< of texels that hold a surface
+    double weight = 0.0;  ///< of texels that hold a surface
     glm::dvec3 radiance{0.0};
     glm::dvec3 normal{0.0};
-    double z = 0.0, z2 = 0.0;       ///< metres from z_c
+    double z = 0.0, z2 = 0.0;  ///< metres from z_c
     TexelSums& operator+=(const TexelSums& other);
 };
 
 /// L of one light at the brute-force rungs.
 struct FootprintRadiance {
     glm::dvec3 eq3{0.0}, eq5{0.0}, eq12{0.0}, eq14{0.0}, eq15{0.0};
-    double slope = 1.0;   ///< mean <n.l> of the texels inside the sphere; of all texels where none is inside
-    int layers = 0;       ///< layers of Eq. 15 that hold a texel of the footprint
+    double slope = 1.0;        ///< mean <n.l> of the texels inside the sphere; of all texels where none is inside
+    int layers = 0;            ///< layers of Eq. 15 that hold a texel of the footprint
     double insideShare = 0.0;  ///< weight of texels inside the sphere over that of all of Omega
 };
 
@@ -31,10 +31,7 @@ struct TermSettings {
     LayerSelection selection = LayerSelection::centre;
     Backface backface = Backface::cosine;
     double vRadiusScale = 1.0;
-    static TermSettings of(const ConeSettings& cones)
-    {
-        return {cones.layerSelection, cones.backface, double(cones.vRadiusScale)};
-    }
+    static TermSettings of(const ConeSettings& cones) { return {cones.layerSelection, cones.backface, double(cones.vRadiusScale)}; }
 };
 
 struct CoveredSphere {

@@ -14,9 +14,9 @@ struct SampleKey {
 };
 
 struct SurfaceIntegral {
-    Vec3 radiance{0.0f};      ///< L of Eq. 2, summed over lights; 0 where there is no surface
-    double coverage = 0.0;    ///< fraction of the disk's rays that meet a surface inside the sphere
-    double noise = 0.0;       ///< of the mean of the three channels: half the difference of two halves of the rays, an upper estimate
+    Vec3 radiance{0.0f};    ///< L of Eq. 2, summed over lights; 0 where there is no surface
+    double coverage = 0.0;  ///< fraction of the disk's rays that meet a surface inside the sphere
+    double noise = 0.0;     ///< of the mean of the three channels: half the difference of two halves of the rays, an upper estimate
 };
 
 /// Eq. 2 for a sphere: `side`^2 rays along -v_c, stratified over the disk that the sphere shows to the receiver, each from where it enters the sphere to where

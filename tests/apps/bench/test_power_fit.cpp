@@ -1,5 +1,5 @@
-#include "catch.h"
 #include "apps/bench/power_fit.h"
+#include "catch.h"
 
 #include <cmath>
 #include <vector>

@@ -1,9 +1,9 @@
+#include "apps/bench/scaling.h"
+#include "apps/bench/scaling_scenes.h"
 #include "catch.h"
 #include "core/base/errors.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/shapes.h"
-#include "apps/bench/scaling.h"
-#include "apps/bench/scaling_scenes.h"
 
 #include <array>
 #include <cmath>
@@ -229,9 +229,12 @@ TEST_CASE("scaling: the frame's times and bytes are sums of its passes", "[sweep
         for (const std::string& name : scalingSeriesNames()) {
             if (name == "frame_cpu_ms" || name == "frame_ms") continue;
             const double value = sample.values[scalingSeriesIndex(name)];
-            if (name.ends_with("_cpu_ms")) cpu += value;
-            else if (name.ends_with("_ms")) wall += value;
-            else if (name.ends_with("_bytes") && name != "gpu_bytes" && name != "voxelize_bytes") bytes += value;
+            if (name.ends_with("_cpu_ms"))
+                cpu += value;
+            else if (name.ends_with("_ms"))
+                wall += value;
+            else if (name.ends_with("_bytes") && name != "gpu_bytes" && name != "voxelize_bytes")
+                bytes += value;
         }
         CHECK(cpu == Approx(sample.values[scalingSeriesIndex("frame_cpu_ms")]));
         CHECK(wall == Approx(sample.values[scalingSeriesIndex("frame_ms")]));

@@ -1,6 +1,5 @@
 #include "apps/capture/convert.h"
 #include "apps/capture/manifest.h"
-#include "tests/apps/capture/capture_fixture.h"
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
@@ -9,6 +8,7 @@
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
 #include "core/scene/scene_hash.h"
+#include "tests/apps/capture/capture_fixture.h"
 #include "voxel/voxelize.h"
 
 #include "catch.h"

@@ -20,7 +20,10 @@ DdsTexture filled(DdsTexture texture)
     return texture;
 }
 
-void setWord(std::vector<std::byte>& file, std::size_t word, std::uint32_t value) { std::memcpy(file.data() + 4 * word, &value, 4); }
+void setWord(std::vector<std::byte>& file, std::size_t word, std::uint32_t value)
+{
+    std::memcpy(file.data() + 4 * word, &value, 4);
+}
 
 std::string messageOfDds(const std::vector<std::byte>& file)
 {
@@ -81,8 +84,8 @@ TEST_CASE("dds: arrays, mips and volumes read back as written, and as an indepen
     scratch.write("a.dds", {reinterpret_cast<const char*>(file.data()), file.size()});
     scratch.write("read.py", kReader);
     std::ostringstream expected;
-    expected << static_cast<std::uint32_t>(texture.format) << " " << texture.width << " " << texture.height << " " << (texture.volume ? texture.depth : 0) << " "
-             << texture.mips << " " << texture.layers;
+    expected << static_cast<std::uint32_t>(texture.format) << " " << texture.width << " " << texture.height << " " << (texture.volume ? texture.depth : 0)
+             << " " << texture.mips << " " << texture.layers;
     for (std::uint32_t layer = 0; layer < texture.layers; ++layer)
         for (std::uint32_t mip = 0; mip < texture.mips; ++mip) expected << " " << std::to_integer<int>(texture.level(layer, mip).back());
     const CommandOutcome outcome = runCommand(python + " " + scratch.path("read.py") + " " + scratch.path("a.dds"));
@@ -101,8 +104,8 @@ TEST_CASE("dds: malformed files give one line that begins with the place", "[cap
     const auto c = GENERATE(values<Case>({
         {0, 0, "no DDS file"},
         {1, 100, "wrong size"},
-        {21, 0x31545844, "no DX10 header"},     // DXT1
-        {32, 71, "DXGI format 71"},             // BC1
+        {21, 0x31545844, "no DX10 header"},  // DXT1
+        {32, 71, "DXGI format 71"},          // BC1
         {33, 2, "neither a 2D texture"},
         {4, 0, "edge outside"},
         {3, 1u << 31, "edge outside"},

@@ -1,7 +1,7 @@
 #include "apps/capture/manifest.h"
-#include "tests/apps/capture/capture_fixture.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
+#include "tests/apps/capture/capture_fixture.h"
 
 #include "catch.h"
 #include "python.h"
@@ -42,7 +42,10 @@ std::string messageOf(Read&& read)
     return "read";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -160,11 +163,12 @@ TEST_CASE("manifest: follows docs/capture.schema.json", "[capture][schema]")
     Json wrong = manifestJson(boxCapture());
     wrong["buffers"][3]["dtype"] = "c8";
     scratch.write("wrong.json", wrong.dump());
-    scratch.write("validate.py", "import json, sys, jsonschema\n"
-                                 "v = jsonschema.Draft7Validator(json.load(open(sys.argv[1])))\n"
-                                 "v.check_schema(v.schema)\n"
-                                 "e = [error.message for error in v.iter_errors(json.load(open(sys.argv[2])))]\n"
-                                 "print(e); sys.exit(len(e))\n");
+    scratch.write("validate.py",
+                  "import json, sys, jsonschema\n"
+                  "v = jsonschema.Draft7Validator(json.load(open(sys.argv[1])))\n"
+                  "v.check_schema(v.schema)\n"
+                  "e = [error.message for error in v.iter_errors(json.load(open(sys.argv[2])))]\n"
+                  "print(e); sys.exit(len(e))\n");
     const auto validate = [&](const std::string& manifest) {
         return runCommand(python + " " + scratch.path("validate.py") + " " LRSM_SOURCE_DIR "/docs/capture.schema.json " + scratch.path(manifest));
     };

@@ -18,7 +18,10 @@ std::vector<std::byte> counting(std::size_t n)
     return bytes;
 }
 
-std::string_view textOf(const std::vector<std::byte>& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view textOf(const std::vector<std::byte>& bytes)
+{
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// A file with this header text, padded as the format asks.
 std::vector<std::byte> fileWithHeader(std::string header, std::size_t dataBytes, char major = 1)
@@ -73,12 +76,20 @@ TEST_CASE("npy: numpy reads the very values, and we read numpy's files", "[captu
     const std::vector<float> values = {0.0f, -0.0f, 1.5f, -3.25e-20f, 65504.0f, 1e-42f};
     scratch.write("f4.npy", textOf(encodeNpy(Dtype::f4, {3, 2}, std::as_bytes(std::span(values)))));
     scratch.write("u8.npy", textOf(encodeNpy(Dtype::u8, {1}, counting(8))));
-    const std::string script = "import numpy as n; a = n.load('" + scratch.path("f4.npy") + "'); assert a.dtype == '<f4' and a.shape == (3, 2); "
+    const std::string script = "import numpy as n; a = n.load('" + scratch.path("f4.npy") +
+                               "'); assert a.dtype == '<f4' and a.shape == (3, 2); "
                                "assert a.tobytes() == n.array([0, -0.0, 1.5, -3.25e-20, 65504, 1e-42], '<f4').tobytes(); "
-                               "assert n.load('" + scratch.path("u8.npy") + "')[0] == 0x322b241d160f0801; "
-                               "n.save('" + scratch.path("back.npy") + "', n.arange(24, dtype='<u2').reshape(2, 3, 4)); "
-                               "n.save('" + scratch.path("fortran.npy") + "', n.asfortranarray(n.zeros((2, 3), '<f4'))); "
-                               "n.save('" + scratch.path("big.npy") + "', n.zeros(3, '>f4'))";
+                               "assert n.load('" +
+                               scratch.path("u8.npy") +
+                               "')[0] == 0x322b241d160f0801; "
+                               "n.save('" +
+                               scratch.path("back.npy") +
+                               "', n.arange(24, dtype='<u2').reshape(2, 3, 4)); "
+                               "n.save('" +
+                               scratch.path("fortran.npy") +
+                               "', n.asfortranarray(n.zeros((2, 3), '<f4'))); "
+                               "n.save('" +
+                               scratch.path("big.npy") + "', n.zeros(3, '>f4'))";
     const CommandOutcome outcome = runCommand(python + " -c \"" + script + "\"");
     INFO(outcome.text);
     REQUIRE(outcome.code == 0);

@@ -1,9 +1,9 @@
 #include "apps/check/candidate.h"
 #include "apps/check/check.h"
-#include "tests/apps/capture/capture_fixture.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/imageio/image_io.h"
+#include "tests/apps/capture/capture_fixture.h"
 
 #include "catch.h"
 #include "scratch.h"
@@ -18,13 +18,19 @@ using namespace lrsm::test;
 
 namespace {
 
-std::string_view viewOf(const std::vector<std::byte>& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view viewOf(const std::vector<std::byte>& bytes)
+{
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 void writeNpy(const ScratchFolder& scratch, const std::string& file, Dtype dtype, const std::vector<std::size_t>& shape, const std::vector<std::byte>& bytes)
 {
     scratch.write("c/" + file, viewOf(encodeNpy(dtype, shape, bytes)));
 }
-void writeNpy(const ScratchFolder& scratch, const Buffer& buffer) { writeNpy(scratch, buffer.name + ".npy", buffer.dtype, buffer.shape, buffer.bytes); }
+void writeNpy(const ScratchFolder& scratch, const Buffer& buffer)
+{
+    writeNpy(scratch, buffer.name + ".npy", buffer.dtype, buffer.shape, buffer.bytes);
+}
 
 template <class T>
 std::vector<std::byte> bytesOf(const std::vector<T>& values)
@@ -51,7 +57,10 @@ std::string refusal(const std::function<void()>& action)
     return "no error";
 }
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool mentions(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// All that was found in the folder has the golden's bytes.
 void requireSame(const ScratchFolder& scratch, const std::vector<std::string>& names, const CandidateOptions& options = {})
@@ -168,14 +177,16 @@ TEST_CASE("candidate: the map renames, reorders, flips and rescales", "[capture]
         const Buffer& b = sharedGolden().at("lrsm0.radiance.mip" + std::to_string(mip));
         std::vector<std::byte> reversed;
         const std::size_t layer = b.bytes.size() / b.shape[0];
-        for (std::size_t l = b.shape[0]; l-- > 0;) reversed.insert(reversed.end(), b.bytes.begin() + std::ptrdiff_t(l * layer), b.bytes.begin() + std::ptrdiff_t((l + 1) * layer));
+        for (std::size_t l = b.shape[0]; l-- > 0;)
+            reversed.insert(reversed.end(), b.bytes.begin() + std::ptrdiff_t(l * layer), b.bytes.begin() + std::ptrdiff_t((l + 1) * layer));
         writeNpy(scratch, "rad_" + std::to_string(mip) + ".npy", b.dtype, b.shape, reversed);
     }
     std::string order;
     for (std::size_t l = sharedGolden().at("lrsm0.radiance.mip0").shape[0]; l-- > 0;) order += (order.empty() ? "" : ", ") + std::to_string(l);
     const std::string map = scratch.write("map.json", R"({
         "gbuffer.normal": {"file": "N.npy", "axes": ["component", "row", "column"], "flip": ["row"], "channels": "bgr", "scale": 2, "offset": -1},
-        "lrsm0.radiance.mip*": {"file": "rad_*.npy", "layers": [)" + order + R"(]}})");
+        "lrsm0.radiance.mip*": {"file": "rad_*.npy", "layers": [)" +
+                                                          order + R"(]}})");
     CandidateOptions options;
     options.map = map;
     options.passes = {"gbuffer", "lrsm 0"};
@@ -185,7 +196,8 @@ TEST_CASE("candidate: the map renames, reorders, flips and rescales", "[capture]
         const Buffer& b = sharedGolden().at("lrsm0.radiance.mip" + std::to_string(mip));
         std::vector<std::byte> reversed;
         const std::size_t layer = b.bytes.size() / b.shape[0];
-        for (std::size_t l = b.shape[0]; l-- > 0;) reversed.insert(reversed.end(), b.bytes.begin() + std::ptrdiff_t(l * layer), b.bytes.begin() + std::ptrdiff_t((l + 1) * layer));
+        for (std::size_t l = b.shape[0]; l-- > 0;)
+            reversed.insert(reversed.end(), b.bytes.begin() + std::ptrdiff_t(l * layer), b.bytes.begin() + std::ptrdiff_t((l + 1) * layer));
         writeNpy(scratch, "rad_" + std::to_string(mip) + ".npy", b.dtype, b.shape, reversed);
     }
     const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden(), options);
@@ -204,7 +216,10 @@ TEST_CASE("candidate: malformed files and maps are one line that names them", "[
         return refusal([&] { (void)readCandidate(scratch.path("c"), sharedGolden(), options); });
     };
     const std::vector<std::byte> good = encodeNpy(depth.dtype, depth.shape, depth.bytes);
-    SECTION("no folder") { CHECK(mentions(refusal([&] { (void)readCandidate(scratch.path("none"), sharedGolden()); }), "none: is no candidate")); }
+    SECTION("no folder")
+    {
+        CHECK(mentions(refusal([&] { (void)readCandidate(scratch.path("none"), sharedGolden()); }), "none: is no candidate"));
+    }
     SECTION("cut off")
     {
         scratch.write("c/gbuffer.depth.npy", viewOf(good).substr(0, good.size() - 3));

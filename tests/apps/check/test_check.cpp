@@ -1,11 +1,11 @@
-#include "apps/check/check.h"
 #include "apps/check/bless.h"
+#include "apps/check/check.h"
 #include "apps/check/rerun.h"
 #include "apps/check/texel_inputs.h"
-#include "tests/apps/capture/capture_fixture.h"
 #include "core/base/errors.h"
 #include "core/base/formats.h"
 #include "core/base/output_folder.h"
+#include "tests/apps/capture/capture_fixture.h"
 
 #include "catch.h"
 #include "scratch.h"
@@ -29,7 +29,8 @@ Buffer* bufferIn(Capture& capture, const std::string& name)
 }
 
 /// A candidate in memory: these buffers of a capture.
-Candidate candidateOf(const Capture& capture, const std::function<bool(const Buffer&)>& has = [](const Buffer&) { return true; })
+Candidate candidateOf(
+    const Capture& capture, const std::function<bool(const Buffer&)>& has = [](const Buffer&) { return true; })
 {
     Candidate candidate;
     candidate.folder = "candidate";
@@ -58,8 +59,14 @@ CheckReport plantIn(const std::string& name, const Change& change)
     return checkCandidate(sharedGolden(), kept.back());
 }
 
-std::uint16_t* codesOf(Buffer& b) { return reinterpret_cast<std::uint16_t*>(b.bytes.data()); }
-float* floatsOf(Buffer& b) { return reinterpret_cast<float*>(b.bytes.data()); }
+std::uint16_t* codesOf(Buffer& b)
+{
+    return reinterpret_cast<std::uint16_t*>(b.bytes.data());
+}
+float* floatsOf(Buffer& b)
+{
+    return reinterpret_cast<float*>(b.bytes.data());
+}
 
 /// Sets every value from the golden's values, through the storage.
 template <class Formula>
@@ -68,12 +75,18 @@ void recompute(Buffer& buffer, const Formula& formula)
     const Buffer before = buffer;
     for (std::size_t i = 0; i < valueCount(before); ++i) {
         const double value = formula(before, i);
-        if (buffer.dtype == Dtype::f4) floatsOf(buffer)[i] = static_cast<float>(value);
-        else if (buffer.dtype == Dtype::f2) codesOf(buffer)[i] = halfFromFloat(static_cast<float>(value), HalfRounding::nearestEven);
-        else if (buffer.dtype == Dtype::u2) codesOf(buffer)[i] = unorm16FromFloat(static_cast<float>(value));
-        else if (buffer.encoding == Encoding::unorm) buffer.bytes[i] = std::byte(unorm8FromFloat(static_cast<float>(value)));
-        else if (value != 0.0) buffer.bytes[i / 8] |= std::byte(1u << (i & 7));
-        else buffer.bytes[i / 8] &= ~std::byte(1u << (i & 7));
+        if (buffer.dtype == Dtype::f4)
+            floatsOf(buffer)[i] = static_cast<float>(value);
+        else if (buffer.dtype == Dtype::f2)
+            codesOf(buffer)[i] = halfFromFloat(static_cast<float>(value), HalfRounding::nearestEven);
+        else if (buffer.dtype == Dtype::u2)
+            codesOf(buffer)[i] = unorm16FromFloat(static_cast<float>(value));
+        else if (buffer.encoding == Encoding::unorm)
+            buffer.bytes[i] = std::byte(unorm8FromFloat(static_cast<float>(value)));
+        else if (value != 0.0)
+            buffer.bytes[i / 8] |= std::byte(1u << (i & 7));
+        else
+            buffer.bytes[i / 8] &= ~std::byte(1u << (i & 7));
     }
 }
 
@@ -83,7 +96,10 @@ std::string firstHint(const CheckReport& report)
     return wrong && !wrong->hints.empty() ? wrong->hints.front() : "";
 }
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool says(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// What an InputError said.
 std::string errorOf(const std::function<void()>& action)
@@ -352,22 +368,58 @@ TEST_CASE("from golden: says what is missing where a pass cannot be run anew", "
 
 TEST_CASE("hints: values in the wrong place", "[capture][hints]")
 {
-    const auto moved = [](const std::string& name, const std::function<std::vector<std::size_t>(std::vector<std::size_t>, const std::vector<std::size_t>&)>& from) {
+    const auto moved = [](const std::string& name,
+                          const std::function<std::vector<std::size_t>(std::vector<std::size_t>, const std::vector<std::size_t>&)>& from) {
         return plantIn(name, [&](Buffer& b) {
-            recompute(b, [&](const Buffer& before, std::size_t i) {
-                return decodedValue(before, elementAt(before, from(indicesOf(before, i), extentsOf(before))));
-            });
+            recompute(
+                b, [&](const Buffer& before, std::size_t i) { return decodedValue(before, elementAt(before, from(indicesOf(before, i), extentsOf(before)))); });
         });
     };
     using Index = std::vector<std::size_t>;
-    CHECK(hinted(moved("gbuffer.depth", [](Index at, const Index& n) { at[0] = n[0] - 1 - at[0]; return at; }), "rows are flipped"));
-    CHECK(hinted(moved("rsm0.normal", [](Index at, const Index&) { std::swap(at[0], at[1]); return at; }), "rows and columns are exchanged"));
-    CHECK(hinted(moved("lrsm0.radiance.mip0", [](Index at, const Index&) { at[0] = at[0] < 2 ? 1 - at[0] : at[0]; return at; }), "layers 0 and 1 are exchanged"));
-    CHECK(hinted(moved("gbuffer.albedo", [](Index at, const Index&) { at[2] = 2 - at[2]; return at; }), "channels 'r' and 'b' are exchanged"));
-    CHECK(hinted(moved("gbuffer.position", [](Index at, const Index& n) { at[1] = std::min(at[1] + 1, n[1] - 1); return at; }), "one column too far down"));
-    CHECK(hinted(moved("voxel.bits", [](Index at, const Index&) { std::swap(at[0], at[2]); return at; }), "z and x are exchanged"));
-    CHECK(hinted(moved("cones.diffuse", [](Index at, const Index&) { at[0] = (at[0] + 1) % 6; return at; }), "cones are in another order: 0 holds 1"));
-    CHECK(hinted(plantIn("voxel.bits", [](Buffer& b) { recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i ^ 7); }); }), "bits of each byte"));
+    CHECK(hinted(moved("gbuffer.depth",
+                       [](Index at, const Index& n) {
+                           at[0] = n[0] - 1 - at[0];
+                           return at;
+                       }),
+                 "rows are flipped"));
+    CHECK(hinted(moved("rsm0.normal",
+                       [](Index at, const Index&) {
+                           std::swap(at[0], at[1]);
+                           return at;
+                       }),
+                 "rows and columns are exchanged"));
+    CHECK(hinted(moved("lrsm0.radiance.mip0",
+                       [](Index at, const Index&) {
+                           at[0] = at[0] < 2 ? 1 - at[0] : at[0];
+                           return at;
+                       }),
+                 "layers 0 and 1 are exchanged"));
+    CHECK(hinted(moved("gbuffer.albedo",
+                       [](Index at, const Index&) {
+                           at[2] = 2 - at[2];
+                           return at;
+                       }),
+                 "channels 'r' and 'b' are exchanged"));
+    CHECK(hinted(moved("gbuffer.position",
+                       [](Index at, const Index& n) {
+                           at[1] = std::min(at[1] + 1, n[1] - 1);
+                           return at;
+                       }),
+                 "one column too far down"));
+    CHECK(hinted(moved("voxel.bits",
+                       [](Index at, const Index&) {
+                           std::swap(at[0], at[2]);
+                           return at;
+                       }),
+                 "z and x are exchanged"));
+    CHECK(hinted(moved("cones.diffuse",
+                       [](Index at, const Index&) {
+                           at[0] = (at[0] + 1) % 6;
+                           return at;
+                       }),
+                 "cones are in another order: 0 holds 1"));
+    CHECK(hinted(plantIn("voxel.bits", [](Buffer& b) { recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i ^ 7); }); }),
+                 "bits of each byte"));
     CHECK(hinted(plantIn("filter.irradiance", [](Buffer& b) { b.bytes = sharedGolden().at("cones.irradiance").bytes; }), "it holds cones.irradiance"));
 }
 
@@ -385,83 +437,121 @@ TEST_CASE("hints: values off by a formula", "[capture][hints]")
     CHECK(hinted(formula("composite.combined", [](double x) { return double(floatFromHalf(halfFromFloat(float(x), HalfRounding::d3d))); }), "stored as half"));
     CHECK(hinted(formula("gbuffer.albedo", [](double) { return 0.0; }), "every element is 0"));
     // Only the colour is off: the hint names the components.
-    CHECK(hinted(plantIn("rsm0.radiance", [](Buffer& b) {
-                     recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i) * (i % 4 == 3 ? 1.0 : 0.25); });
-                 }), "'r', 'g', 'b' are off by a constant factor: 1 / 4"));
+    CHECK(hinted(
+        plantIn("rsm0.radiance",
+                [](Buffer& b) { recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i) * (i % 4 == 3 ? 1.0 : 0.25); }); }),
+        "'r', 'g', 'b' are off by a constant factor: 1 / 4"));
 }
 
 TEST_CASE("hints: terms that were forgotten", "[capture][hints]")
 {
     const auto depthAlpha = [](std::size_t i) { return decodedValue(sharedGolden().at("lrsm0.depth.mip0"), i - i % 4 + 2); };
-    CHECK(hinted(plantIn("lrsm0.radiance.mip0", [&](Buffer& b) {
-                     recompute(b, [&](const Buffer& before, std::size_t i) { return depthAlpha(i) > 0.0 ? decodedValue(before, i) / depthAlpha(i) : 0.0; });
-                 }), "not multiplied by alpha"));
-    CHECK(hinted(plantIn("lrsm0.depth.mip0", [&](Buffer& b) {
-                     recompute(b, [&](const Buffer& before, std::size_t i) {
-                         const double z = decodedValue(before, i - i % 4);
-                         return i % 4 == 1 && depthAlpha(i) > 0.0 ? z * z / depthAlpha(i) : decodedValue(before, i);
-                     });
-                 }), "not the mean of squares"));
-    CHECK(hinted(plantIn("lrsm0.depth.mip0", [&](Buffer& b) {
-                     const std::vector<LayerRange> ranges = sharedGolden().lights[0].storedRanges();
-                     const std::size_t perLayer = b.elements() / b.shape[0];
-                     recompute(b, [&](const Buffer& before, std::size_t i) {
-                         const LayerRange& r = ranges[i / perLayer];
-                         const double w = double(r.depthMax) - r.depthMin, m = r.depthMin, a = depthAlpha(i);
-                         const double z = decodedValue(before, i - i % 4), z2 = decodedValue(before, i - i % 4 + 1);
-                         return i % 4 == 0 ? z * w + m * a : i % 4 == 1 ? z2 * w * w + 2 * z * w * m + m * m * a : decodedValue(before, i);
-                     });
-                 }), "not warped"));
-    CHECK(hinted(plantIn("rsm0.radiance", [](Buffer& b) {
-                     recompute(b, [](const Buffer& before, std::size_t i) {
-                         const double cosine = decodedValue(sharedGolden().at("rsm0.normal"), i - i % 4 + 3);
-                         return i % 4 == 3 || cosine <= 0.0 ? decodedValue(before, i) : decodedValue(before, i) / cosine;
-                     });
-                 }), "not multiplied by <n.l>"));
-    CHECK(hinted(plantIn("composite.combined", [](Buffer& b) {
-                     recompute(b, [](const Buffer& before, std::size_t i) { return decodedValue(before, i) - decodedValue(sharedGolden().at("direct.radiance"), i); });
-                 }), "direct.radiance is not in the sum"));
-    CHECK(hinted(plantIn("gbuffer.depth", [](Buffer& b) {
-                     recompute(b, [](const Buffer& before, std::size_t i) {
-                         double square = 0.0;
-                         for (int c = 0; c < 3; ++c) {
-                             const double d = decodedValue(sharedGolden().at("gbuffer.position"), i * 3 + std::size_t(c)) - double(sharedGolden().camera.position[c]);
-                             square += d * d;
-                         }
-                         return decodedValue(before, i) > 0.0 ? std::sqrt(square) : 0.0;
-                     });
-                 }), "distance from the eye"));
+    CHECK(hinted(plantIn("lrsm0.radiance.mip0",
+                         [&](Buffer& b) {
+                             recompute(
+                                 b, [&](const Buffer& before, std::size_t i) { return depthAlpha(i) > 0.0 ? decodedValue(before, i) / depthAlpha(i) : 0.0; });
+                         }),
+                 "not multiplied by alpha"));
+    CHECK(hinted(plantIn("lrsm0.depth.mip0",
+                         [&](Buffer& b) {
+                             recompute(b, [&](const Buffer& before, std::size_t i) {
+                                 const double z = decodedValue(before, i - i % 4);
+                                 return i % 4 == 1 && depthAlpha(i) > 0.0 ? z * z / depthAlpha(i) : decodedValue(before, i);
+                             });
+                         }),
+                 "not the mean of squares"));
+    CHECK(hinted(plantIn("lrsm0.depth.mip0",
+                         [&](Buffer& b) {
+                             const std::vector<LayerRange> ranges = sharedGolden().lights[0].storedRanges();
+                             const std::size_t perLayer = b.elements() / b.shape[0];
+                             recompute(b, [&](const Buffer& before, std::size_t i) {
+                                 const LayerRange& r = ranges[i / perLayer];
+                                 const double w = double(r.depthMax) - r.depthMin, m = r.depthMin, a = depthAlpha(i);
+                                 const double z = decodedValue(before, i - i % 4), z2 = decodedValue(before, i - i % 4 + 1);
+                                 return i % 4 == 0 ? z * w + m * a : i % 4 == 1 ? z2 * w * w + 2 * z * w * m + m * m * a : decodedValue(before, i);
+                             });
+                         }),
+                 "not warped"));
+    CHECK(hinted(plantIn("rsm0.radiance",
+                         [](Buffer& b) {
+                             recompute(b, [](const Buffer& before, std::size_t i) {
+                                 const double cosine = decodedValue(sharedGolden().at("rsm0.normal"), i - i % 4 + 3);
+                                 return i % 4 == 3 || cosine <= 0.0 ? decodedValue(before, i) : decodedValue(before, i) / cosine;
+                             });
+                         }),
+                 "not multiplied by <n.l>"));
+    CHECK(hinted(plantIn("composite.combined",
+                         [](Buffer& b) {
+                             recompute(b, [](const Buffer& before, std::size_t i) {
+                                 return decodedValue(before, i) - decodedValue(sharedGolden().at("direct.radiance"), i);
+                             });
+                         }),
+                 "direct.radiance is not in the sum"));
+    CHECK(hinted(plantIn("gbuffer.depth",
+                         [](Buffer& b) {
+                             recompute(b, [](const Buffer& before, std::size_t i) {
+                                 double square = 0.0;
+                                 for (int c = 0; c < 3; ++c) {
+                                     const double d = decodedValue(sharedGolden().at("gbuffer.position"), i * 3 + std::size_t(c)) -
+                                                      double(sharedGolden().camera.position[c]);
+                                     square += d * d;
+                                 }
+                                 return decodedValue(before, i) > 0.0 ? std::sqrt(square) : 0.0;
+                             });
+                         }),
+                 "distance from the eye"));
 }
 
 TEST_CASE("hints: mips picked, of the wrong level, or rounded otherwise", "[capture][hints]")
 {
-    const auto mip = [](const std::string& texture, int level) -> const Buffer& { return sharedGolden().at("lrsm0." + texture + ".mip" + std::to_string(level)); };
+    const auto mip = [](const std::string& texture, int level) -> const Buffer& {
+        return sharedGolden().at("lrsm0." + texture + ".mip" + std::to_string(level));
+    };
     const auto at = [](const Buffer& b, std::size_t layer, std::size_t row, std::size_t column, std::size_t c) {
         const std::size_t indices[] = {layer, row, column, c};
         return decodedValue(b, elementAt(b, indices));
     };
-    CHECK(hinted(plantIn("lrsm0.radiance.mip1", [&](Buffer& b) {
-                     recompute(b, [&](const Buffer& before, std::size_t i) { const auto x = indicesOf(before, i); return at(mip("radiance", 0), x[0], 2 * x[1], 2 * x[2], x[3]); });
-                 }), "texel 00 of each 2x2"));
-    CHECK(hinted(plantIn("lrsm0.radiance.mip1", [&](Buffer& b) {
-                     recompute(b, [&](const Buffer& before, std::size_t i) { const auto x = indicesOf(before, i); return at(mip("radiance", 2), x[0], x[1] / 2, x[2] / 2, x[3]); });
-                 }), "level off by one: it repeats lrsm0.radiance.mip2"));
+    CHECK(hinted(plantIn("lrsm0.radiance.mip1",
+                         [&](Buffer& b) {
+                             recompute(b, [&](const Buffer& before, std::size_t i) {
+                                 const auto x = indicesOf(before, i);
+                                 return at(mip("radiance", 0), x[0], 2 * x[1], 2 * x[2], x[3]);
+                             });
+                         }),
+                 "texel 00 of each 2x2"));
+    CHECK(hinted(plantIn("lrsm0.radiance.mip1",
+                         [&](Buffer& b) {
+                             recompute(b, [&](const Buffer& before, std::size_t i) {
+                                 const auto x = indicesOf(before, i);
+                                 return at(mip("radiance", 2), x[0], x[1] / 2, x[2] / 2, x[3]);
+                             });
+                         }),
+                 "level off by one: it repeats lrsm0.radiance.mip2"));
     const auto mean = [&](const Buffer& below, const std::vector<std::size_t>& x) {
         double sum = 0.0;
         for (std::size_t k = 0; k < 4; ++k) sum += at(below, x[0], 2 * x[1] + k / 2, 2 * x[2] + k % 2, x[3]);
         return sum / 4;
     };
-    CHECK(hinted(plantIn("lrsm0.radiance.mip1", [&](Buffer& b) {
-                     recompute(b, [&](const Buffer& before, std::size_t i) { return mean(mip("radiance", 0), indicesOf(before, i)); });  // stores nearest even
-                 }), "rounds to nearest even"));
-    CHECK(hinted(plantIn("lrsm0.depth.mip1", [&](Buffer& b) {
-                     for (std::size_t i = 0; i < b.elements(); ++i) codesOf(b)[i] = std::uint16_t(mean(mip("depth", 0), indicesOf(b, i)) * 65535.0 + 1e-6);
-                 }), "rounds toward zero (truncates)"));
-    CHECK(hinted(plantIn("lrsm0.depth.mip0", [&](Buffer& b) {
-                     const std::optional<Buffer> wide = wideOutput(sharedGolden(), "lrsm0.depth.mip0");
-                     REQUIRE(wide);
-                     for (std::size_t i = 0; i < b.elements(); ++i) codesOf(b)[i] = std::uint16_t(decodedValue(*wide, i) * 65535.0 + 1e-6);
-                 }), "rounds toward zero (truncates)"));
+    CHECK(hinted(plantIn("lrsm0.radiance.mip1",
+                         [&](Buffer& b) {
+                             recompute(b, [&](const Buffer& before, std::size_t i) {
+                                 return mean(mip("radiance", 0), indicesOf(before, i));
+                             });  // stores nearest even
+                         }),
+                 "rounds to nearest even"));
+    CHECK(hinted(plantIn("lrsm0.depth.mip1",
+                         [&](Buffer& b) {
+                             for (std::size_t i = 0; i < b.elements(); ++i)
+                                 codesOf(b)[i] = std::uint16_t(mean(mip("depth", 0), indicesOf(b, i)) * 65535.0 + 1e-6);
+                         }),
+                 "rounds toward zero (truncates)"));
+    CHECK(hinted(plantIn("lrsm0.depth.mip0",
+                         [&](Buffer& b) {
+                             const std::optional<Buffer> wide = wideOutput(sharedGolden(), "lrsm0.depth.mip0");
+                             REQUIRE(wide);
+                             for (std::size_t i = 0; i < b.elements(); ++i) codesOf(b)[i] = std::uint16_t(decodedValue(*wide, i) * 65535.0 + 1e-6);
+                         }),
+                 "rounds toward zero (truncates)"));
 }
 
 TEST_CASE("hints: another setting, or something missing among the inputs, found by running the pass", "[capture][hints][rerun]")
@@ -478,10 +568,12 @@ TEST_CASE("hints: another setting, or something missing among the inputs, found 
     CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) { c.settings.cones.voxelLevelBias += 1.0f; }), "voxel_level_bias=-1"));
     CHECK(hinted(runWith("direct", "direct.radiance", [](Capture& c) { c.settings.direct.shadows = Shadows::off; }), "shadows=off"));
     CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) { c.lights[0].projection.up = -c.lights[0].projection.up; }), "v flipped"));
-    CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) {
-                     for (Buffer& b : c.buffers)
-                         if (b.pass == "voxelize" || b.pass == "voxel mips") std::fill(b.bytes.begin(), b.bytes.end(), std::byte{0});
-                 }), "nothing is occluded"));
+    CHECK(hinted(runWith("cones", "cones.diffuse",
+                         [](Capture& c) {
+                             for (Buffer& b : c.buffers)
+                                 if (b.pass == "voxelize" || b.pass == "voxel mips") std::fill(b.bytes.begin(), b.bytes.end(), std::byte{0});
+                         }),
+                 "nothing is occluded"));
     CHECK(hinted(runWith("lrsm 0", "lrsm0.radiance.mip0", [](Capture& c) { c.settings.layers.halfRounding = HalfRounding::nearestEven; }), "nearest"));
 }
 

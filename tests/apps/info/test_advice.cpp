@@ -1,9 +1,9 @@
 #include "apps/info/advice.h"
 
 #include "conetrace/render.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/shapes.h"
+#include "core/settings/settings_table.h"
 
 #include <catch.h>
 
@@ -184,7 +184,10 @@ TEST_CASE("what is left out changes no bit: random small scenes, forced and not"
 {
     std::mt19937 random(71);
     const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
-    const auto point = [&](float reach) { const float x = uniform(-reach, reach), y = uniform(0.1f, reach), z = uniform(-reach, reach); return Vec3(x, y, z); };
+    const auto point = [&](float reach) {
+        const float x = uniform(-reach, reach), y = uniform(0.1f, reach), z = uniform(-reach, reach);
+        return Vec3(x, y, z);
+    };
     for (int trial = 0; trial < 12; ++trial) {
         Scene scene = floorScene();
         const int boxes = 1 + int(random() % 3u);

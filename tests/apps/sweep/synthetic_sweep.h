@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/settings/settings_table.h"
 #include "apps/sweep/measurement.h"
+#include "core/settings/settings_table.h"
 
 #include <cmath>
 #include <string>
@@ -74,8 +74,8 @@ inline std::vector<Measurement> syntheticSweep(int scenes)
         rows.push_back(syntheticAxis(s, "mip_filter=max", 0.3, 4.5, 100'000'000));         // loses both
         rows.push_back(syntheticAxis(s, "voxel_storage=float32", 0.1, 4.4, 200'000'000));  // no gain
         rows.push_back(syntheticAxis(s, "density_k=1", 0.1, 4.04, 100'000'000));           // not one bit
-        rows.back().irradianceSha256 = rows[rows.size() - 10].irradianceSha256;  // balanced's
-        rows.push_back(syntheticAxis(s, "step=0.25", 0.07, 3.9, 100'000'000));        // wins both
+        rows.back().irradianceSha256 = rows[rows.size() - 10].irradianceSha256;            // balanced's
+        rows.push_back(syntheticAxis(s, "step=0.25", 0.07, 3.9, 100'000'000));             // wins both
         for (std::uint64_t spp = 1; spp <= 1024; spp *= 2) rows.push_back(syntheticTracer(s, spp));
     }
     return rows;

@@ -5,10 +5,10 @@
 
 #include "catch.h"
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <unistd.h>
 
 using namespace lrsm;
 
@@ -63,7 +63,8 @@ TEST_CASE("axes in a file are the same as on the command line", "[sweep][axes]")
 TEST_CASE("a product of axes has every combination that has a meaning, and names the others", "[sweep][axes]")
 {
     std::vector<std::string> refused;
-    const auto all = combine(preset("balanced"), {parseAxis("cone_count=4,6"), parseAxis("estimator=paper,slab"), parseAxis("layer_selection=centre,touched")}, &refused);
+    const auto all =
+        combine(preset("balanced"), {parseAxis("cone_count=4,6"), parseAxis("estimator=paper,slab"), parseAxis("layer_selection=centre,touched")}, &refused);
     CHECK(all.size() == 6);
     CHECK(refused.size() == 2);
     CHECK(refused.at(0).find("cone_count=4 estimator=slab layer_selection=centre: ") == 0);
@@ -117,8 +118,8 @@ TEST_CASE("settings that only matter together are changed together", "[sweep][ax
 {
     const std::vector<NamedSettings> all = oneAtATime(preset("balanced"));
     CHECK(labelled(all, "gaussian_table_size=256 gaussian=table"));
-    CHECK(labelled(all, "gaussian_table_size=64"));           // alone: the same bits as the base
-    CHECK_FALSE(labelled(all, "gaussian_table_size=256"));    // and one such value is enough
+    CHECK(labelled(all, "gaussian_table_size=64"));         // alone: the same bits as the base
+    CHECK_FALSE(labelled(all, "gaussian_table_size=256"));  // and one such value is enough
     CHECK(labelled(all, "density_k=1 estimator=paper"));
     CHECK(labelled(all, "layer_selection=centre estimator=paper"));
     CHECK(labelled(all, "layer_overlap=0.1 estimator=paper layer_selection=centre"));

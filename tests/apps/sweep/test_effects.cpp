@@ -3,8 +3,8 @@
 #include "apps/sweep/effects.h"
 #include "apps/sweep/rivals.h"
 
-#include <algorithm>
 #include <catch.h>
+#include <algorithm>
 
 using namespace lrsm;
 using namespace lrsm::test;
@@ -90,7 +90,8 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     const std::vector<Effect> effects = effectsOf(cases, kUnit, 0.02);
     Labels order;
     for (const Effect& e : effects) order.push_back(e.label);
-    CHECK(order == Labels{"step=0.25", "cone_count=9", "cone_count=12", "voxel_resolution=256", "cone_count=4", "voxel_storage=float32", "mip_filter=max", "density_k=1"});
+    CHECK(order == Labels{"step=0.25", "cone_count=9", "cone_count=12", "voxel_resolution=256", "cone_count=4", "voxel_storage=float32", "mip_filter=max",
+                          "density_k=1"});
 
     CHECK(effect(effects, "step=0.25").kind == EffectKind::winsBoth);
     CHECK(effect(effects, "mip_filter=max").kind == EffectKind::losesBoth);

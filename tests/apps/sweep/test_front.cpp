@@ -1,5 +1,5 @@
-#include "catch.h"
 #include "apps/sweep/front.h"
+#include "catch.h"
 
 #include <cmath>
 #include <limits>
@@ -78,7 +78,7 @@ TEST_CASE("an exact picture and equal costs do not make NaNs", "[sweep][front]")
 {
     const std::vector<CostError> curve = {{1.0, 0.4}, {1.0, 0.3}, {2.0, 0.0}};
     CHECK(errorAtCost(curve, 1.0).value() == 0.3);
-    CHECK(errorAtCost(curve, 1.5).value() == 0.3);    // no logarithm of 0: what has been reached
+    CHECK(errorAtCost(curve, 1.5).value() == 0.3);  // no logarithm of 0: what has been reached
     CHECK(costAtError(curve, 0.1).value() == 2.0);
     CHECK(costAtError(curve, 0.35).value() == Approx(1.0));
 }

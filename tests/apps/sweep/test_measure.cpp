@@ -1,8 +1,8 @@
 #include "apps/sweep/measure.h"
 
 #include "core/base/hash.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
+#include "core/settings/settings_table.h"
 
 #include "catch.h"
 
@@ -151,8 +151,8 @@ TEST_CASE("the calibration frame is no preset's: its settings are pinned", "[swe
 {
     // A change here changes the unit of every cost on record.
     const Settings s = Calibration::settings();
-    const std::map<std::string, std::string> pinned = {
-        {"voxel_resolution", "128"}, {"rsm_resolution", "256"}, {"cone_count", "6"}, {"step", "0.5"}, {"start_voxels", "3"}, {"depth_layers", "2"}};
+    const std::map<std::string, std::string> pinned = {{"voxel_resolution", "128"}, {"rsm_resolution", "256"}, {"cone_count", "6"}, {"step", "0.5"},
+                                                       {"start_voxels", "3"},       {"depth_layers", "2"}};
     std::map<std::string, std::string> found;
     for (const SettingDifference& change : differences(preset("balanced"), s)) found[change.key] = change.b;
     const auto json = settingsToJson(s);

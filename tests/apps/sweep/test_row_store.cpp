@@ -1,19 +1,19 @@
 #include "apps/sweep/row_store.h"
 
+#include "apps/sweep/measure.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
-#include "apps/sweep/measure.h"
 
 #include "catch.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 
 using namespace lrsm;
 namespace fs = std::filesystem;
@@ -218,7 +218,8 @@ TEST_CASE("a folder has one sweep at a time; damaged lines are named; rows of an
 
     Measurement other = rowNumber(7);
     other.key = "made by another";
-    std::ofstream(folder.file("rows.jsonl"), std::ios::binary) << whole << measurementJson(other).dump() << "\n" << measurementJson(rowNumber(1)).dump() << "\n";
+    std::ofstream(folder.file("rows.jsonl"), std::ios::binary) << whole << measurementJson(other).dump() << "\n"
+                                                               << measurementJson(rowNumber(1)).dump() << "\n";
     std::ofstream(folder.file("sweep.csv")) << "nonsense";
     RowStore store(folder.path.string());
     CHECK(store.rowsOfOtherVersions() == 1);

@@ -1,8 +1,8 @@
+#include "apps/sweep/search.h"
+#include "apps/sweep/search_grid.h"
 #include "catch.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
-#include "apps/sweep/search.h"
-#include "apps/sweep/search_grid.h"
 
 #include <cmath>
 #include <limits>
@@ -15,7 +15,9 @@ namespace {
 
 std::vector<Axis> smallAxes()
 {
-    return {{"cone_count", {"1", "3", "6", "12", "24"}}, {"voxel_resolution", {"128", "256", "512", "1024"}}, {"rsm_resolution", {"256", "512", "1024", "2048"}},
+    return {{"cone_count", {"1", "3", "6", "12", "24"}},
+            {"voxel_resolution", {"128", "256", "512", "1024"}},
+            {"rsm_resolution", {"256", "512", "1024", "2048"}},
             {"depth_layers", {"1", "2", "3"}}};
 }
 constexpr int kSmallGrid = 5 * 4 * 4 * 3;

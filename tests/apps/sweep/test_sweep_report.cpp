@@ -3,11 +3,11 @@
 #include "apps/sweep/sweep_report.h"
 #include "core/imageio/image_io.h"
 
-#include <algorithm>
 #include <catch.h>
-#include <cstdlib>
 #include <python.h>
 #include <scratch.h>
+#include <algorithm>
+#include <cstdlib>
 
 using namespace lrsm;
 using namespace lrsm::test;
@@ -21,7 +21,10 @@ std::size_t count(const std::string& text, const std::string& part)
     return found;
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// A picture that no other row has.
 void writeThumbnails(const ScratchFolder& folder, const std::vector<Measurement>& rows)
@@ -48,9 +51,12 @@ std::string browser()
 CommandOutcome opened(const std::string& chromium, const ScratchFolder& folder, const std::string& page)
 {
     folder.write("report.html", page);
-    return runCommand("timeout 60 " + chromium + " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking --disable-component-update "
-                      "--disable-sync --disable-dev-shm-usage --proxy-server=127.0.0.1:9 --host-resolver-rules='MAP * ~NOTFOUND' --enable-logging=stderr --window-size=1400,2400 "
-                      "--virtual-time-budget=10000 --user-data-dir='" + folder.path("profile") + "' --dump-dom 'file://" + folder.path("report.html") + "'");
+    return runCommand("timeout 60 " + chromium +
+                      " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking --disable-component-update "
+                      "--disable-sync --disable-dev-shm-usage --proxy-server=127.0.0.1:9 --host-resolver-rules='MAP * ~NOTFOUND' --enable-logging=stderr "
+                      "--window-size=1400,2400 "
+                      "--virtual-time-budget=10000 --user-data-dir='" +
+                      folder.path("profile") + "' --dump-dom 'file://" + folder.path("report.html") + "'");
 }
 
 /// Points at the middle of the first dataset's first point of each chart and writes down what came of it.
@@ -97,8 +103,9 @@ TEST_CASE("the report tells scenes, fronts, effects and the path tracer", "[swee
 {
     const ScratchFolder folder;
     const std::string page = sweepReportHtml(syntheticSweep(3), folder.path("."));
-    for (const char* part : {"scene0: error against time", "scene2: error against memory", "All scenes: error against time", "noise floor", "calibration frames (10 ms here)", "path tracer",
-                             "33 LRSM rows and 33 path tracer rows on 3 scenes", "wins both", "changes nothing", "never on any front", "320 x 180"})
+    for (const char* part :
+         {"scene0: error against time", "scene2: error against memory", "All scenes: error against time", "noise floor", "calibration frames (10 ms here)",
+          "path tracer", "33 LRSM rows and 33 path tracer rows on 3 scenes", "wins both", "changes nothing", "never on any front", "320 x 180"})
         CHECK(contains(page, part));
     // Useless values are coloured; memory saved is worth something.
     CHECK(contains(page, "<tr class=\"failed\"><td>mip_filter=max</td>"));
@@ -114,7 +121,8 @@ TEST_CASE("a sweep in progress has a report too", "[sweep][report]")
     const std::vector<Measurement> whole = syntheticSweep(2);
     CHECK(contains(sweepReportHtml({}, "/nonexistent"), "0 LRSM rows"));
     // Each beginning, and each way to lack something.
-    for (std::size_t n = 1; n < whole.size(); n += 3) CHECK(contains(sweepReportHtml({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)}, "/nonexistent"), "</html>"));
+    for (std::size_t n = 1; n < whole.size(); n += 3)
+        CHECK(contains(sweepReportHtml({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)}, "/nonexistent"), "</html>"));
     const auto without = [&](auto drop) {
         std::vector<Measurement> rows = whole;
         std::erase_if(rows, drop);
@@ -146,7 +154,8 @@ TEST_CASE("thumbnails beyond the page's budget stay in the folder, those of the 
     const ScratchFolder folder;
     const std::vector<Measurement> rows = syntheticSweep(1);
     // 22 files of 1 MB where 8 MB fit: presets, front, path tracer.
-    for (const Measurement& row : rows) folder.write("thumbnails/" + row.key + ".png", std::string(1'000'000, row.label == "step=0.25" ? 'a' : row.label == "mip_filter=max" ? 'b' : 'c'));
+    for (const Measurement& row : rows)
+        folder.write("thumbnails/" + row.key + ".png", std::string(1'000'000, row.label == "step=0.25" ? 'a' : row.label == "mip_filter=max" ? 'b' : 'c'));
     const std::string page = sweepReportHtml(rows, folder.path("."));
     CHECK(count(page, "data:image/png") == 8);
     CHECK(contains(page, "8 of 22 thumbnails"));

@@ -1,8 +1,8 @@
+#include "apps/sweep/operating_points.h"
+#include "apps/tune/tune.h"
 #include "catch.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
-#include "apps/sweep/operating_points.h"
-#include "apps/tune/tune.h"
 
 #include <algorithm>
 #include <cmath>

@@ -147,7 +147,8 @@ TEST_CASE("diffuse and combined layers follow the split; specular and direct sta
 {
     const auto scene = makeBuiltinScene("cornell-glossy");
     const Settings settings = smallSettings();
-    const Frame shipped = renderSplit(*scene, settings, {Visibility::voxel, Radiance::lrsm, 8}), exact = renderSplit(*scene, settings, {Visibility::exact, Radiance::exact, 8});
+    const Frame shipped = renderSplit(*scene, settings, {Visibility::voxel, Radiance::lrsm, 8}),
+                exact = renderSplit(*scene, settings, {Visibility::exact, Radiance::exact, 8});
     CHECK(shipped.direct.texels == exact.direct.texels);
     CHECK(shipped.indirectSpecular.texels == exact.indirectSpecular.texels);
     CHECK(shipped.irradiance.texels != exact.irradiance.texels);

@@ -243,7 +243,8 @@ ConeSettings paperSettings()
 std::vector<double> centresOf(const ConeSettings& settings, double tanHalf, std::size_t count)
 {
     std::vector<double> centres;
-    for (double t = double(settings.startVoxels); centres.size() < count; t += double(settings.step) * std::max(double(settings.minDiameterVoxels), 2 * t * tanHalf))
+    for (double t = double(settings.startVoxels); centres.size() < count;
+         t += double(settings.step) * std::max(double(settings.minDiameterVoxels), 2 * t * tanHalf))
         centres.push_back(t * double(kVoxelSize));
     return centres;
 }
@@ -324,7 +325,8 @@ TEST_CASE("Eq. 1: the cut-off ends a cone that has nothing left to gather, and l
     const World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), oneLayer(), settings);
     NoRecorder recorder;
     ConeCounts counts;
-    const ConeResult cone = world.march(ByStep{std::vector<float>(20, 0.7f)}, rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f))), 0.05f, counts, recorder);
+    const ConeResult cone =
+        world.march(ByStep{std::vector<float>(20, 0.7f)}, rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f))), 0.05f, counts, recorder);
     CHECK(counts.steps == 4);  // 0.3^4 = 0.0081 is the first below 0.01
     CHECK(double(cone.radiance.x) == Approx(1 - std::pow(0.3, 4)).epsilon(kPaperMaxError));
 }

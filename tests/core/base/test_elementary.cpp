@@ -18,13 +18,12 @@ TEST_CASE("sinCos, log2Exact, exp2Exact hold their bounds against 50-digit arith
         const double scale = std::ldexp(1.0, static_cast<int>(random() % 30) - 10);
         const double angle = std::uniform_real_distribution<>(-scale, scale)(random);
         const SinCos sc = sinCos(angle);
-        worstSin = std::max({worstSin, std::abs(static_cast<double>(Big(sc.sin) - sin(Big(angle)))),
-                             std::abs(static_cast<double>(Big(sc.cos) - cos(Big(angle))))});
+        worstSin =
+            std::max({worstSin, std::abs(static_cast<double>(Big(sc.sin) - sin(Big(angle)))), std::abs(static_cast<double>(Big(sc.cos) - cos(Big(angle))))});
 
         const double x = std::ldexp(std::uniform_real_distribution<>(0.5, 1.0)(random), static_cast<int>(random() % 200) - 100);
         const Big exactLog = log(Big(x)) / log(Big(2));
-        worstLog = std::max(worstLog, std::abs(static_cast<double>(Big(log2Exact(x)) - exactLog)) /
-                                          std::max(1.0, std::abs(static_cast<double>(exactLog))));
+        worstLog = std::max(worstLog, std::abs(static_cast<double>(Big(log2Exact(x)) - exactLog)) / std::max(1.0, std::abs(static_cast<double>(exactLog))));
 
         const double y = std::uniform_real_distribution<>(-900.0, 900.0)(random);
         const Big exactExp = pow(Big(2), Big(y));
@@ -53,8 +52,7 @@ TEST_CASE("fastLog2 holds its bound everywhere and is exact at powers of two", "
 TEST_CASE("fastExp2 holds its bound and is exact at whole numbers", "[core][elementary]")
 {
     double worst = 0;
-    for (float x = -126.0f; x < 127.99f; x += 0.00173f)
-        worst = std::max(worst, std::abs(double(fastExp2(x)) / std::exp2(double(x)) - 1));
+    for (float x = -126.0f; x < 127.99f; x += 0.00173f) worst = std::max(worst, std::abs(double(fastExp2(x)) / std::exp2(double(x)) - 1));
     CAPTURE(worst);
     CHECK(worst <= double(kFastExp2MaxError));
     for (int e = -126; e <= 127; ++e) CHECK(fastExp2(float(e)) == std::ldexp(1.0f, e));

@@ -4,9 +4,9 @@
 
 #include "catch.h"
 
+#include <unistd.h>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 using namespace lrsm;
 namespace fs = std::filesystem;

@@ -5,11 +5,11 @@
 
 #include "catch.h"
 
+#include <unistd.h>
 #include <bit>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <unistd.h>
 
 using namespace lrsm;
 

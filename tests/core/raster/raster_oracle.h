@@ -14,8 +14,8 @@ struct Point {
     long double x, y, z, w;
 };
 struct Snapped {
-    long long x, y;        // 1/256 pixel
-    long double z, invW;   // z/w and 1/w
+    long long x, y;       // 1/256 pixel
+    long double z, invW;  // z/w and 1/w
 };
 
 inline long long nearestEven(long double v)

@@ -37,9 +37,9 @@ RasterOutput drawAll(const std::vector<Triangle>& triangles, int width, int heig
 
 bool sameBits(const RasterOutput& a, const RasterOutput& b)
 {
-    return std::memcmp(a.fragments.texels.data(), b.fragments.texels.data(), a.fragments.byteSize()) == 0 &&
-           a.counts.submitted == b.counts.submitted && a.counts.drawn == b.counts.drawn && a.counts.clipped == b.counts.clipped &&
-           a.counts.culled == b.counts.culled && a.counts.dropped == b.counts.dropped;
+    return std::memcmp(a.fragments.texels.data(), b.fragments.texels.data(), a.fragments.byteSize()) == 0 && a.counts.submitted == b.counts.submitted &&
+           a.counts.drawn == b.counts.drawn && a.counts.clipped == b.counts.clipped && a.counts.culled == b.counts.culled &&
+           a.counts.dropped == b.counts.dropped;
 }
 
 /// Clip position of a point given in pixels (y down).
@@ -49,8 +49,7 @@ Vec4 atPixel(float x, float y, float zOverW, float w, int width, int height)
 }
 
 enum class Kind { random, tiny, sliver, huge, onGrid, degenerate, nearClipped, farOut };
-constexpr Kind kKinds[] = {Kind::random, Kind::tiny,       Kind::sliver,      Kind::huge,
-                           Kind::onGrid, Kind::degenerate, Kind::nearClipped, Kind::farOut};
+constexpr Kind kKinds[] = {Kind::random, Kind::tiny, Kind::sliver, Kind::huge, Kind::onGrid, Kind::degenerate, Kind::nearClipped, Kind::farOut};
 
 Triangle makeTriangle(Kind kind, Random& random, int width, int height)
 {
@@ -62,43 +61,45 @@ Triangle makeTriangle(Kind kind, Random& random, int width, int height)
     };
     Triangle t{anywhere(0.2f), anywhere(0.2f), anywhere(0.2f)};
     switch (kind) {
-        case Kind::random: break;
-        case Kind::tiny: {
-            const float size = std::ldexp(2.0f, -int(random() % 8)), x = uniform(random, 0, w0), y = uniform(random, 0, h0);
-            for (Vec4& v : t) v = atPixel(x + uniform(random, 0, size), y + uniform(random, 0, size), uniform(random, 0, 1), 1, width, height);
-            break;
+    case Kind::random: break;
+    case Kind::tiny: {
+        const float size = std::ldexp(2.0f, -int(random() % 8)), x = uniform(random, 0, w0), y = uniform(random, 0, h0);
+        for (Vec4& v : t) v = atPixel(x + uniform(random, 0, size), y + uniform(random, 0, size), uniform(random, 0, 1), 1, width, height);
+        break;
+    }
+    case Kind::sliver: {
+        const float s = uniform(random, -1, 2), d = std::ldexp(1.0f, -int(random() % 16));
+        for (int k = 0; k < 4; ++k) t[2][k] = t[0][k] + s * (t[1][k] - t[0][k]) + uniform(random, -d, d) * 0.1f;
+        t[2].w = std::abs(t[2].w) + 0.01f;
+        t[2].z = std::abs(t[2].z);
+        break;
+    }
+    case Kind::huge:
+        for (Vec4& v : t) v.x *= std::ldexp(1.0f, int(random() % 20)), v.y *= std::ldexp(1.0f, int(random() % 20));
+        break;
+    case Kind::onGrid:  // corners on pixel centres and borders: many centres lie exactly on edges
+        for (Vec4& v : t)
+            v = atPixel(float(random() % (2 * unsigned(width) + 8)) * 0.5f - 2, float(random() % (2 * unsigned(height) + 8)) * 0.5f - 2, uniform(random, 0, 1),
+                        1, width, height);
+        break;
+    case Kind::degenerate:
+        if (random() % 2)
+            t[2] = t[random() % 2];
+        else
+            t[2] = 0.5f * (t[0] + t[1]);
+        break;
+    case Kind::nearClipped:
+        for (Vec4& v : t) {
+            v.w = uniform(random, -1, 1.5f);
+            v.z = v.w - 0.125f;  // an infinite projection's near plane, through all signs of w
+            v.x = uniform(random, -2, 2);
+            v.y = uniform(random, -2, 2);
         }
-        case Kind::sliver: {
-            const float s = uniform(random, -1, 2), d = std::ldexp(1.0f, -int(random() % 16));
-            for (int k = 0; k < 4; ++k) t[2][k] = t[0][k] + s * (t[1][k] - t[0][k]) + uniform(random, -d, d) * 0.1f;
-            t[2].w = std::abs(t[2].w) + 0.01f;
-            t[2].z = std::abs(t[2].z);
-            break;
-        }
-        case Kind::huge:
-            for (Vec4& v : t) v.x *= std::ldexp(1.0f, int(random() % 20)), v.y *= std::ldexp(1.0f, int(random() % 20));
-            break;
-        case Kind::onGrid:  // corners on pixel centres and borders: many centres lie exactly on edges
-            for (Vec4& v : t)
-                v = atPixel(float(random() % (2 * unsigned(width) + 8)) * 0.5f - 2, float(random() % (2 * unsigned(height) + 8)) * 0.5f - 2,
-                            uniform(random, 0, 1), 1, width, height);
-            break;
-        case Kind::degenerate:
-            if (random() % 2) t[2] = t[random() % 2];
-            else t[2] = 0.5f * (t[0] + t[1]);
-            break;
-        case Kind::nearClipped:
-            for (Vec4& v : t) {
-                v.w = uniform(random, -1, 1.5f);
-                v.z = v.w - 0.125f;  // an infinite projection's near plane, through all signs of w
-                v.x = uniform(random, -2, 2);
-                v.y = uniform(random, -2, 2);
-            }
-            break;
-        case Kind::farOut:
-            for (Vec4& v : t)
-                if (random() % 2) v *= Vec4(uniform(random, 1, 4000), uniform(random, 1, 4000), 1, 1);
-            break;
+        break;
+    case Kind::farOut:
+        for (Vec4& v : t)
+            if (random() % 2) v *= Vec4(uniform(random, 1, 4000), uniform(random, 1, 4000), 1, 1);
+        break;
     }
     return t;
 }
@@ -164,12 +165,12 @@ TEST_CASE("vertices snap to 1/256 pixel, ties to even", "[raster]")
 {
     // A left edge at x = 8.5 pixels + offset: the centre at 8.5 is covered while the snapped offset is <= 0.
     const auto coversCentre = [](float offset) {
-        const RasterOutput drawn = drawAll(
-            {{atPixel(8.5f + offset, -10, 0.5f, 1, 32, 32), atPixel(8.5f + offset, 50, 0.5f, 1, 32, 32), atPixel(31, 20, 0.5f, 1, 32, 32)}}, 32, 32);
+        const RasterOutput drawn =
+            drawAll({{atPixel(8.5f + offset, -10, 0.5f, 1, 32, 32), atPixel(8.5f + offset, 50, 0.5f, 1, 32, 32), atPixel(31, 20, 0.5f, 1, 32, 32)}}, 32, 32);
         return drawn.fragments.at(8, 20).triangle == 0;
     };
     CHECK(coversCentre(0.0f));
-    CHECK(coversCentre(0x1p-9f));              // half a step above an even multiple (8.5 * 256 = 2176): down
+    CHECK(coversCentre(0x1p-9f));  // half a step above an even multiple (8.5 * 256 = 2176): down
     CHECK_FALSE(coversCentre(0x1p-9f + 0x1p-18f));
     CHECK_FALSE(coversCentre(0x1p-8f));
     CHECK_FALSE(coversCentre(0x1.8p-8f));
@@ -291,7 +292,7 @@ TEST_CASE("a picture of many triangles is its triangles merged one by one: LESS,
         for (int i = 0; i < 120; ++i) {
             Triangle t = makeTriangle(kKinds[random() % 8], random, width, height);
             if (i % 3 == 0)
-                for (Vec4& v : t) v.z = 0.25f * v.w;  // flat: exact ties with each other
+                for (Vec4& v : t) v.z = 0.25f * v.w;                              // flat: exact ties with each other
             if (i % 7 == 0 && i > 0) t = triangles[random() % triangles.size()];  // the same once more
             triangles.push_back(t);
         }

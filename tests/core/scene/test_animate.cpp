@@ -51,8 +51,14 @@ TEST_CASE("STEP holds the earlier key, LINEAR is linear, both clamp outside the 
     const std::vector<float> times = {1, 2, 4}, values = {10, 20, 0};
     const Channel step = channel(Property::weights, Interpolation::step, times, 1, values);
     const Channel linear = channel(Property::weights, Interpolation::linear, times, 1, values);
-    for (const auto& [time, held, between] : {std::tuple{0.0f, 10.0, 10.0}, {1.0f, 10.0, 10.0}, {1.5f, 10.0, 15.0}, {2.0f, 20.0, 20.0},
-                                              {3.5f, 20.0, 5.0}, {4.0f, 0.0, 0.0}, {99.0f, 0.0, 0.0}, {-5.0f, 10.0, 10.0}}) {
+    for (const auto& [time, held, between] : {std::tuple{0.0f, 10.0, 10.0},
+                                              {1.0f, 10.0, 10.0},
+                                              {1.5f, 10.0, 15.0},
+                                              {2.0f, 20.0, 20.0},
+                                              {3.5f, 20.0, 5.0},
+                                              {4.0f, 0.0, 0.0},
+                                              {99.0f, 0.0, 0.0},
+                                              {-5.0f, 10.0, 10.0}}) {
         CAPTURE(time);
         CHECK(sample1(step, time) == held);
         CHECK(sample1(linear, time) == between);
@@ -126,8 +132,8 @@ TEST_CASE("a skinned vertex is the weighted sum of its joints' motions; its own 
     b.attributes()["WEIGHTS_0"] = b.add<float>({1, 0, 0, 0, 0.25f, 0.75f, 0, 0, 3, 0, 0, 0}, "VEC4", 5126);  // the last sum to 3
     // Joint 1 sits at x = 1 in the bind pose, and is turned by a quarter about z and moved up by 5.
     const double h = std::sqrt(0.5);
-    b.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {100, 100, 100}}}, {{"children", {2}}},
-                       {{"translation", {1, 5, 0}}, {"rotation", {0, 0, h, h}}}};
+    b.json["nodes"] = {
+        {{"mesh", 0}, {"skin", 0}, {"translation", {100, 100, 100}}}, {{"children", {2}}}, {{"translation", {1, 5, 0}}, {"rotation", {0, 0, h, h}}}};
     b.json["scenes"][0]["nodes"] = {0, 1};
     const int bind = b.add<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, "MAT4", 5126);
     b.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", bind}}};

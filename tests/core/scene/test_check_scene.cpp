@@ -27,7 +27,10 @@ std::string refusal(const Check& check)
     return "";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -122,6 +125,5 @@ TEST_CASE("a vertex colour that is NaN is black; grazing light and eye give a fi
     mirror.normal = mirror.geometricNormal = Vec3(0, 1, 0);
     mirror.specularColor = Vec3(1.0f);
     mirror.roughness = 0.0f;
-    for (const float grazing : {1e-10f, 1e-20f, 1e-30f, 1e-40f})
-        CHECK(isFinite(evaluateSpecular(mirror, Vec3(1, grazing, 0), Vec3(-1, grazing, 0))));
+    for (const float grazing : {1e-10f, 1e-20f, 1e-30f, 1e-40f}) CHECK(isFinite(evaluateSpecular(mirror, Vec3(1, grazing, 0), Vec3(-1, grazing, 0))));
 }

@@ -56,8 +56,7 @@ void checkStreams(const Scene& scene)
     for (const Mesh& mesh : scene.meshes) {
         const std::size_t n = mesh.positions.size();
         REQUIRE(mesh.normals.size() == n);
-        for (const std::size_t size : {mesh.tangents.size(), mesh.uv0.size(), mesh.uv1.size(), mesh.colors.size()})
-            REQUIRE((size == 0 || size == n));
+        for (const std::size_t size : {mesh.tangents.size(), mesh.uv0.size(), mesh.uv1.size(), mesh.colors.size()}) REQUIRE((size == 0 || size == n));
         float worst = 0.0f;
         for (const Vec3& normal : mesh.normals) worst = std::max(worst, std::abs(glm::length(normal) - 1.0f));
         for (const Vec4& tangent : mesh.tangents) worst = std::max(worst, std::abs(glm::length(Vec3(tangent)) - 1.0f));

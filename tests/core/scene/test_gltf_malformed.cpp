@@ -25,9 +25,9 @@ std::string errorOf(const std::string& path)
 
 /// The decision on each malformed file: what the error must say, or "" where it loads, and why.
 const std::map<std::string, std::string> kDecisions = {
-    {"assimp__BoxBadNormals.glb", ""},                  // normals are brought to unit length; wrong bounds are not read
-    {"gltfrs__minimal_accessor_invalid.gltf", ""},      // wrong bounds are not read
-    {"tinygltf__unassigned-skeleton.gltf", ""},         // targets and strides of buffer views do not matter; last rows of bind matrices
+    {"assimp__BoxBadNormals.glb", ""},                     // normals are brought to unit length; wrong bounds are not read
+    {"gltfrs__minimal_accessor_invalid.gltf", ""},         // wrong bounds are not read
+    {"tinygltf__unassigned-skeleton.gltf", ""},            // targets and strides of buffer views do not matter; last rows of bind matrices
     {"tinygltf__zero-sized-bin-chunk-issue-440.glb", ""},  // valid
     {"assimp__RecursiveNodes.gltf", "nodes[0]: is its own ancestor"},
     {"assimp__badArray.gltf", "meshes[0].primitives: must be an array"},
@@ -109,8 +109,7 @@ TEST_CASE("a file cut short anywhere, or with any byte changed, ends in an Input
     const std::string whole = b.glb();
     const ScratchFolder folder;
     REQUIRE(errorOf(folder.write("whole.glb", whole)) == "");
-    for (std::size_t length = 0; length < whole.size(); ++length)
-        CHECK(errorOf(folder.write("cut.glb", whole.substr(0, length))) != "");
+    for (std::size_t length = 0; length < whole.size(); ++length) CHECK(errorOf(folder.write("cut.glb", whole.substr(0, length))) != "");
     for (std::size_t i = 0; i < whole.size(); i += 3) {
         std::string changed = whole;
         changed[i] = char(changed[i] ^ (1 << (i % 8)));

@@ -14,8 +14,7 @@ namespace {
 double signedVolume(const Mesh& mesh)
 {
     double volume = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        volume += double(glm::dot(glm::cross(mesh.positions[a], mesh.positions[b]), mesh.positions[c])) / 6;
+    for (const auto& [a, b, c] : mesh.triangles) volume += double(glm::dot(glm::cross(mesh.positions[a], mesh.positions[b]), mesh.positions[c])) / 6;
     return volume;
 }
 

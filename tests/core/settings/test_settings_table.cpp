@@ -44,7 +44,10 @@ std::string refusalOf(const std::string& assignment)
     return refusal([&] { applySetting(settings, assignment); });
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 /// A value other than the current one, in range.
 std::string otherValue(const SettingInfo& info, const std::string& current)

@@ -1,5 +1,5 @@
-#include "core/base/errors.h"
 #include "apps/validate/equations/check_equations.h"
+#include "core/base/errors.h"
 
 #include "catch.h"
 

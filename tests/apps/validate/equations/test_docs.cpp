@@ -1,6 +1,6 @@
 // docs/equations.md against the program: constants, bounds and domains cannot drift apart.
-#include "core/settings/settings.h"
 #include "apps/validate/equations/check_equations.h"
+#include "core/settings/settings.h"
 
 #include "catch.h"
 
@@ -70,7 +70,8 @@ TEST_CASE("defaults that are choices: a change of one is a change of every pictu
     CHECK(s.direct.shadowConeApertureDegrees == 2.0f);
     const ConeSettings& c = s.cones;
     CHECK((c.count == 6 && c.setsPerPixel == 1 && c.maxSteps == 1024 && c.gaussianTableSize == 1024));
-    CHECK((c.apertureScale == 0.5f && c.step == 0.5f && c.startVoxels == 3.0f && c.normalOffsetVoxels == 1.0f && c.minDiameterVoxels == 1.0f && c.push == 0.0f));
+    CHECK(
+        (c.apertureScale == 0.5f && c.step == 0.5f && c.startVoxels == 3.0f && c.normalOffsetVoxels == 1.0f && c.minDiameterVoxels == 1.0f && c.push == 0.0f));
     CHECK((c.transmittanceCutoff == 0.01f && c.densityK == 2.0f && c.voxelLevelBias == -2.0f));
     CHECK((c.emitterDelayTaps == 2.0f && c.emitterDelayVoxels == 0.75f && c.emitterSlantCap == 0.5f));
     CHECK((c.vRadiusScale == 1.0f && c.rsmLevelBias == 0.0f && c.rsmMinLevel == 0.0f && c.specularApertureDegrees == 10.0f));

@@ -1,14 +1,14 @@
 // Properties that hold for every input, tried on inputs that rapidcheck makes up; a failure is shrunk and its seed printed.
+#include "apps/validate/equations/synthetic_maps.h"
 #include "conetrace/lrsm/march_paper.h"
 #include "conetrace/lrsm/march_slab.h"
 #include "lrsm/sample.h"
-#include "apps/validate/equations/synthetic_maps.h"
 
 #include "catch.h"
 
+#include <rapidcheck.h>
 #include <cassert>
 #include <cstdlib>
-#include <rapidcheck.h>
 
 using namespace lrsm;
 
@@ -156,7 +156,8 @@ TEST_CASE("properties of Eq. 1: opacity composes, and transmittance never grows"
         ConeSettings s = settings;
         s.densityK = between(0.25f, 4.0f);
         const float a = between(0.0f, 1.0f), one = between(0.01f, 4.0f), two = between(0.01f, 4.0f);
-        const double apart = (1.0 - double(stepOpacity(a, one, s))) * (1.0 - double(stepOpacity(a, two, s))), together = 1.0 - double(stepOpacity(a, one + two, s));
+        const double apart = (1.0 - double(stepOpacity(a, one, s))) * (1.0 - double(stepOpacity(a, two, s))),
+                     together = 1.0 - double(stepOpacity(a, one + two, s));
         RC_ASSERT(std::abs(apart - together) <= 3.0 * double(kStepOpacityMaxError) * std::max(1.0, double(s.densityK * (one + two)) / 16.0));
     }));
     CHECK(rc::check("in [0, 1] and growing with density and length", [&] {

@@ -18,7 +18,10 @@ ExtremeResult planted(const std::function<void(Mode, Probe&)>& run, bool mustRef
     return runCase(group, {"defect", "", "", run, false, mustRefuse}, Mode::gpuD3d);
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -58,7 +61,8 @@ TEST_CASE("the runner finds a refusal that is not due, one that is missing, one 
     CHECK(contains(planted([](Mode, Probe&) { throw InputError("no"); }, true).detail, "unclear"));
     CHECK(contains(planted([](Mode, Probe&) { throw InputError("two\nlines: of text"); }, true).detail, "unclear"));
     CHECK(contains(planted([](Mode, Probe&) { throw std::runtime_error("boom"); }).detail, "threw boom"));
-    CHECK(contains(planted([](Mode, Probe& probe) { probe.refuses("it", "nonsense", [] { throw InputError("place", "another reason"); }); }).detail, "unclear"));
+    CHECK(
+        contains(planted([](Mode, Probe& probe) { probe.refuses("it", "nonsense", [] { throw InputError("place", "another reason"); }); }).detail, "unclear"));
     CHECK(planted([](Mode, Probe&) { throw InputError("place", "a good reason"); }, true).outcome == Outcome::refused);
     CHECK(planted([](Mode, Probe&) { throw MachineError("grid", "not enough memory"); }).outcome == Outcome::skipped);
 }
@@ -100,7 +104,16 @@ TEST_CASE("counting of NaNs and infinities sees every field of every pass's outp
 
 TEST_CASE("a curve says where it crosses its bound, in either direction, or that it does not", "[extremes][seeded]")
 {
-    CurvePlan plan{"planted", "x", "error", {1, 10, 100, 1000}, {Mode::gpuD3d, Mode::float32}, [](Mode mode, double x) { return mode == Mode::float32 ? 0.0 : 1e-3 * x; }, 0.05, false, "A planted error", true};
+    CurvePlan plan{"planted",
+                   "x",
+                   "error",
+                   {1, 10, 100, 1000},
+                   {Mode::gpuD3d, Mode::float32},
+                   [](Mode mode, double x) { return mode == Mode::float32 ? 0.0 : 1e-3 * x; },
+                   0.05,
+                   false,
+                   "A planted error",
+                   true};
     ExtremeCurve curve = drawCurve(plan);
     CHECK(curve.degradesFrom == 100.0);
     CHECK(contains(curve.sentence, "A planted error degrades from x = 100 on"));

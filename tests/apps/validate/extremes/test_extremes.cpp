@@ -73,8 +73,8 @@ TEST_CASE("extremes: the curves say from where accuracy degrades", "[extremes][c
 {
     // From above and below, so that neither a worse pipeline nor a careless curve passes.
     const ExtremesReport report = runExtremes({"radiance, ", {}});
-    CHECK(curveNamed(report, "radiance, upwards").degradesFrom == Approx(1e5));      // half ends at 65504
-    CHECK(curveNamed(report, "radiance, downwards").degradesFrom == Approx(1e-5));   // its normal numbers at 6.1e-5
+    CHECK(curveNamed(report, "radiance, upwards").degradesFrom == Approx(1e5));     // half ends at 65504
+    CHECK(curveNamed(report, "radiance, downwards").degradesFrom == Approx(1e-5));  // its normal numbers at 6.1e-5
     CHECK(curveNamed(report, "radiance, downwards").degradesDownwards);
     const ExtremesReport depth = runExtremes({"depth ratio", {}});
     CHECK(curveNamed(depth, "depth ratio").degradesFrom == Approx(1e6));

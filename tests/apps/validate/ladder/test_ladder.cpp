@@ -1,11 +1,11 @@
-#include "catch.h"
-#include "core/base/errors.h"
-#include "core/base/parallel.h"
-#include "core/scene/builtin_scenes.h"
-#include "conetrace/render.h"
 #include "apps/validate/ladder/cone_samples.h"
 #include "apps/validate/ladder/ladder.h"
 #include "apps/validate/ladder/ladder_statistics.h"
+#include "catch.h"
+#include "conetrace/render.h"
+#include "core/base/errors.h"
+#include "core/base/parallel.h"
+#include "core/scene/builtin_scenes.h"
 #include "voxel/voxelize.h"
 
 #include <cmath>
@@ -57,7 +57,9 @@ struct SmallFrame {
     GatherPlan plan;
 
     explicit SmallFrame(const Settings& s)
-        : settings(s), opacity(buildPyramid(voxelize(scene, s.voxel), s.voxel)), gbuffer(renderGBuffer(scene, scene.cameras[0], needs, {16, 12})),
+        : settings(s),
+          opacity(buildPyramid(voxelize(scene, s.voxel), s.voxel)),
+          gbuffer(renderGBuffer(scene, scene.cameras[0], needs, {16, 12})),
           plan(planGather(opacity, needs, settings.cones))
     {
         for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, s.rsm), s.layers));

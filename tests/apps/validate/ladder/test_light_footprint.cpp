@@ -1,6 +1,6 @@
-#include "catch.h"
 #include "apps/validate/ladder/filtered_radiance.h"
 #include "apps/validate/ladder/light_footprint.h"
+#include "catch.h"
 
 #include <cmath>
 
@@ -59,9 +59,11 @@ FootprintRadiance footprint(const Rsm& rsm, const CoveredSphere& sphere, const L
 
 }  // namespace
 
-TEST_CASE("where every assumption holds, every rung gives L: a lit wall that faces light and receiver, sphere centred on it", "[ladder][eq3][eq5][eq12][eq14][eq15]")
+TEST_CASE("where every assumption holds, every rung gives L: a lit wall that faces light and receiver, sphere centred on it",
+          "[ladder][eq3][eq5][eq12][eq14][eq15]")
 {
-    const Rsm rsm = surfaceMap(512, [](double, double) { return 0.0; }, Vec3(0, 1, 0), Vec3(2.0f, 1.0f, 0.5f));
+    const Rsm rsm = surfaceMap(
+        512, [](double, double) { return 0.0; }, Vec3(0, 1, 0), Vec3(2.0f, 1.0f, 0.5f));
     const double radius = GENERATE(0.0005, 0.01, 0.3, 1.2);
     const LayerSettings layers = GENERATE(oneLayer(), LayerSettings{.depthLayers = 3, .normalLayers = 2, .overlap = 0.0f, .storage = Storage::float32});
     CAPTURE(radius, layers.depthLayers);
@@ -88,7 +90,8 @@ TEST_CASE("where every assumption holds, every rung gives L: a lit wall that fac
 TEST_CASE("Eq. 3: a sphere h above a lit plane sees the part of its shadow that the plane's disk fills; Eq. 12 steps", "[ladder][eq3][eq12]")
 {
     const double radius = 0.8, h = GENERATE(0.2, 0.4, 0.7);
-    const Rsm rsm = surfaceMap(1024, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
+    const Rsm rsm = surfaceMap(
+        1024, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
     const FootprintRadiance at = footprint(rsm, {dvec3(0.0, h, 0.0), radius, dvec3(0, 1, 0)});
     const double disk = 1.0 - h * h / (radius * radius);
     CHECK(at.eq3.x == Approx(disk).margin(2e-3));  // 400 texels across
@@ -100,7 +103,8 @@ TEST_CASE("Eq. 4: the Jacobian 1 / <n.l> gives slanted surface its area, the gue
 {
     const double tan = GENERATE(0.5, 1.0, 2.0), cosine = 1.0 / std::sqrt(1.0 + tan * tan);
     const Vec3 n(static_cast<float>(-tan * cosine), static_cast<float>(cosine), 0.0f);
-    const Rsm rsm = surfaceMap(1024, [tan](double x, double) { return tan * x; }, n);
+    const Rsm rsm = surfaceMap(
+        1024, [tan](double x, double) { return tan * x; }, n);
     const CoveredSphere fromLight{dvec3(0.0), 0.5, dvec3(0, 1, 0)}, fromNormal{dvec3(0.0), 0.5, dvec3(n)};
     // The sphere's disk of the plane covers `cosine` of its shadow.
     CHECK(footprint(rsm, fromLight).eq3.x == Approx(cosine).margin(3e-3));
@@ -124,7 +128,8 @@ TEST_CASE("Eq. 12 errs by up to 0.11 on a slope (depths evenly spread) and by 0.
 
     // Two planes of equal area just out of the sphere's reach: nothing is inside, and the Gaussian's one sigma is.
     const double radius = 0.5, reach = radius * 1.001;
-    const Rsm rsm = surfaceMap(512, [reach](double x, double) { return x < 0.0 ? reach : -reach; }, Vec3(0, 1, 0));
+    const Rsm rsm = surfaceMap(
+        512, [reach](double x, double) { return x < 0.0 ? reach : -reach; }, Vec3(0, 1, 0));
     const CoveredSphere sphere{dvec3(0.0), radius, dvec3(0, 1, 0)};
     const FootprintRadiance one = footprint(rsm, sphere);
     CHECK(one.eq5.x == 0.0);
@@ -141,7 +146,8 @@ TEST_CASE("Eq. 12 errs by up to 0.11 on a slope (depths evenly spread) and by 0.
 TEST_CASE("Eq. 15 loses the layers that do not hold z_c, unless every touched one is taken", "[ladder][eq15]")
 {
     // Planes 0.1 above and below a sphere centred a little above the cut between their layers.
-    const Rsm rsm = surfaceMap(256, [](double x, double) { return x < 0.0 ? 0.1 : -0.1; }, Vec3(0, 1, 0));
+    const Rsm rsm = surfaceMap(
+        256, [](double x, double) { return x < 0.0 ? 0.1 : -0.1; }, Vec3(0, 1, 0));
     const CoveredSphere sphere{dvec3(0.0, 0.01, 0.0), 0.5, dvec3(0, 1, 0)};
     LayerSettings two = oneLayer();
     two.depthLayers = 2;
@@ -162,14 +168,16 @@ TEST_CASE("Eq. 15 loses the layers that do not hold z_c, unless every touched on
 
 TEST_CASE("missing texels: unlit in Eq. 3, no light but no share of V and N from Eq. 5 on; beside the map as well", "[ladder][eq3][eq5]")
 {
-    Rsm rsm = surfaceMap(512, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
+    Rsm rsm = surfaceMap(
+        512, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
     for (int j = 0; j < 512; ++j)
         for (int i = 0; i < 256; ++i) rsm.texels.at(i, j) = {};
     const CoveredSphere half{dvec3(0.0), 0.6, dvec3(0, 1, 0)};
     const FootprintRadiance holes = footprint(rsm, half);
     for (const dvec3& rung : {holes.eq3, holes.eq5, holes.eq12, holes.eq14, holes.eq15}) CHECK(rung.x == Approx(0.5).margin(1e-3));
 
-    const Rsm whole = surfaceMap(512, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
+    const Rsm whole = surfaceMap(
+        512, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
     const FootprintRadiance border = footprint(whole, {dvec3(2.0, 0.0, 0.0), 0.6, dvec3(0, 1, 0)});
     for (const dvec3& rung : {border.eq3, border.eq5, border.eq12, border.eq14, border.eq15}) CHECK(rung.x == Approx(0.5).margin(1e-3));
     CHECK(footprint(whole, {dvec3(5.0, 0.0, 0.0), 0.6, dvec3(0, 1, 0)}).eq3.x == 0.0);
@@ -204,12 +212,13 @@ TEST_CASE("the texels in a beam: a lit plane through it emits L at any slant, pa
 {
     const double tan = GENERATE(0.0, 0.5, 2.0), cosine = 1.0 / std::sqrt(1.0 + tan * tan);
     const Vec3 n(static_cast<float>(-tan * cosine), static_cast<float>(cosine), 0.0f);
-    const Rsm rsm = surfaceMap(1024, [tan](double x, double) { return tan * x; }, n, Vec3(2.0f, 1.0f, 0.5f));
+    const Rsm rsm = surfaceMap(
+        1024, [tan](double x, double) { return tan * x; }, n, Vec3(2.0f, 1.0f, 0.5f));
     const dvec3 down(0.0, -1.0, 0.0), slanted = glm::normalize(dvec3(0.6, -1.0, 0.3));
     CHECK(beamEmission(rsm, {dvec3(0.0), down, 0.3, 3.0}).x == Approx(2.0).epsilon(0.01));
     CHECK(beamEmission(rsm, {dvec3(0.1, 0.1 * tan, 0.0), slanted, 0.2, 3.0}).z == Approx(0.5).epsilon(0.02));
-    CHECK(beamEmission(rsm, {dvec3(0.0), -down, 0.3, 3.0}).x == 0.0);                     // from behind
-    CHECK(beamEmission(rsm, {dvec3(0.0, 3.0, 0.0), down, 0.3, 2.0}).x == 0.0);            // clear air
+    CHECK(beamEmission(rsm, {dvec3(0.0), -down, 0.3, 3.0}).x == 0.0);                                       // from behind
+    CHECK(beamEmission(rsm, {dvec3(0.0, 3.0, 0.0), down, 0.3, 2.0}).x == 0.0);                              // clear air
     CHECK(beamEmission(rsm, {dvec3(2.0, 2.0 * tan, 0.0), down, 0.3, 3.0}).x == Approx(1.0).epsilon(0.02));  // half of it beside the map
     if (tan > 0.0)  // the segment ends at the beam's middle: half of the plane is before it
         CHECK(beamEmission(rsm, {dvec3(0.0, 0.75, 0.0), down, 0.3, 1.5}).x == Approx(1.0).epsilon(0.02));
@@ -228,7 +237,8 @@ TEST_CASE("the texels in a beam: a lit plane through it emits L at any slant, pa
 
 TEST_CASE("LayerModel agrees with the passes' partition: same slices, same decay", "[ladder][eq13][eq15]")
 {
-    Rsm rsm = surfaceMap(64, [](double x, double z) { return 0.7 * x + 0.2 * z; }, Vec3(0, 1, 0));
+    Rsm rsm = surfaceMap(
+        64, [](double x, double z) { return 0.7 * x + 0.2 * z; }, Vec3(0, 1, 0));
     LayerSettings settings;
     settings.depthLayers = GENERATE(1, 2, 3, 5);
     settings.overlap = GENERATE(0.0f, 0.1f, 0.4f);

@@ -1,7 +1,7 @@
-#include "catch.h"
 #include "../reference/reference_scenes.h"
 #include "apps/validate/ladder/cone_opacity.h"
 #include "apps/validate/ladder/surface_integral.h"
+#include "catch.h"
 #include "voxel/voxelize.h"
 
 #include <cmath>
@@ -86,13 +86,13 @@ TEST_CASE("a beam sees the first surface within its length: all of it, the part 
     CHECK(emission({Vec3(0, 1, 0), Vec3(0, -1, 0), 0.5f, 1.5f}) == Approx(0.5 * lit).epsilon(0.02));  // the floor begins at x = 0
     const float root = 0.70710678f;
     CHECK(emission({Vec3(5, 1, 0), Vec3(root, -root, 0), 0.3f, 1.0f / root}) == Approx(0.5 * lit).epsilon(0.02));  // ends on the floor in its middle
-    CHECK(emission({Vec3(5, -1, 0), Vec3(0, 1, 0), 0.5f, 1.5f}) == 0.0);  // its underside is dark
+    CHECK(emission({Vec3(5, -1, 0), Vec3(0, 1, 0), 0.5f, 1.5f}) == 0.0);                                           // its underside is dark
 }
 
 TEST_CASE("opacity by rays: a cone that faces a wall is blocked by the solid angle that has reached it", "[ladder][eq1]")
 {
-    const Scene scene = makeScene({rectangle({-20, -20, 2}, {0, 40, 0}, {40, 0, 0}), rectangle({-20, -20, -2}, {0, 40, 0}, {40, 0, 0})},
-                                  {diffuse(Vec3(0.5f))}, {sun({0, -1, 0}, 1.0f)});
+    const Scene scene = makeScene({rectangle({-20, -20, 2}, {0, 40, 0}, {40, 0, 0}), rectangle({-20, -20, -2}, {0, 40, 0}, {40, 0, 0})}, {diffuse(Vec3(0.5f))},
+                                  {sun({0, -1, 0}, 1.0f)});
     VoxelSettings voxels;
     voxels.resolution = 64;
     const OpacityPyramid opacity = buildPyramid(voxelize(scene, voxels), voxels);
