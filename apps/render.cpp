@@ -34,17 +34,12 @@ std::optional<float> chosenExposure(const std::string& text)
     return stops;
 }
 
-/// Nothing for the ordinary frame.
-std::optional<SplitSettings> chosenSplit(const RenderArguments& options)
+GatherMethod chosenMethod(const RenderArguments& options)
 {
     if (options.visibility != "voxel" && options.visibility != "exact") throw InputError("--visibility " + options.visibility, "must be voxel or exact");
     if (options.radiance != "lrsm" && options.radiance != "exact") throw InputError("--radiance " + options.radiance, "must be lrsm or exact");
-    if (options.visibility == "voxel" && options.radiance == "lrsm") return {};
-    if (!options.pixel.empty()) throw InputError("--pixel", "explains the cones' own picture; leave out --visibility and --radiance");
-    SplitSettings split;
-    split.visibility = options.visibility == "exact" ? Visibility::exact : Visibility::voxel;
-    split.radiance = options.radiance == "exact" ? Radiance::exact : Radiance::lrsm;
-    return split;
+    return raysMethod({.visibility = options.visibility == "exact" ? Visibility::exact : Visibility::voxel,
+                       .radiance = options.radiance == "exact" ? Radiance::exact : Radiance::lrsm});
 }
 
 void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, const std::string& where)
@@ -68,7 +63,7 @@ int runRender(const RenderArguments& options)
     const IVec2 size = chosenSize(options);
     const std::optional<float> exposure = chosenExposure(options.exposure);
     if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
-    const std::optional<SplitSettings> split = chosenSplit(options);
+    RenderOptions renderOptions{.width = size.x, .height = size.y, .watch = {}, .method = chosenMethod(options)};
     std::optional<IVec2> pixel;
     if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
     std::optional<OutputFolder> folder;
@@ -77,35 +72,29 @@ int runRender(const RenderArguments& options)
     const ThreadLimit threads(options.threads);
     const Scene scene = loadChosenScene(options);
     const Camera camera = chosenCamera(scene, options);
-    const Requirements needs = analyseRequirements(scene, settings.force);
-    enforceMemoryLimit(scene, needs, settings, size.x, size.y, options.maxMemoryMegabytes);
+    const Requirements needs = prepare(scene, settings);
+    MemoryQuestion memory{scene, needs, settings, size.x, size.y};
+    enforceMemoryLimit(memory, options.maxMemoryMegabytes);
 
-    RenderOptions renderOptions{.width = size.x, .height = size.y, .hashPasses = true, .progress = {}, .replaceDiffuse = {}};
-    if (pixel) std::cout << explainPixel(scene, camera, needs, settings, renderOptions, pixel->x, pixel->y);
+    if (pixel) std::cout << explainPixel(scene, camera, settings, renderOptions, pixel->x, pixel->y);
     if (!folder) return 0;
 
     Progress progress(options.quiet);
-    renderOptions.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
-    if (split)
-        renderOptions.replaceDiffuse = [&](const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, Gathered& gathered) {
-            gatherSplit(gbuffer, opacity, lrsms, EmbreeScene(scene), settings.cones, *split, gathered);
-        };
-    const Frame frame = renderFrame(scene, camera, needs, settings, renderOptions);
+    renderOptions.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+    const Frame frame = renderFrame(scene, camera, settings, renderOptions);
     progress.show("writing", 0.0);
 
-    std::vector<int> layersKept;
-    for (const Frame::LightReport& light : frame.lights) layersKept.push_back(static_cast<int>(light.ranges.size()));
-    FrameRecord record{scene,
-                       camera,
-                       needs,
-                       settings,
-                       options.preset,
-                       hashScene(scene),
-                       predictMemory(settings, needs, layersKept, size.x, size.y),
-                       exposure,
-                       options.visibility,
-                       options.radiance};
-    addMeasured(record.memory, frame);
+    memory.rendered = &frame.passes;
+    FrameRecord record{.scene = scene,
+                       .camera = camera,
+                       .settings = settings,
+                       .preset = options.preset,
+                       .sceneHash = hashScene(scene),
+                       .memory = predictMemory(memory),
+                       .exposureStops = exposure,
+                       .visibility = options.visibility,
+                       .radiance = options.radiance};
+    addMeasured(record.memory, frame.passes);
     const nlohmann::ordered_json json = frameJson(frame, record);
     writeFrame(*folder, frame, record, json);
     folder->commit();

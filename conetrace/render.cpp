@@ -3,7 +3,8 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
-#include "conetrace/pass_log.h"
+#include "conetrace/lrsm/gather.h"
+#include "core/base/errors.h"
 #include "core/base/float_state.h"
 #include "core/scene/check_scene.h"
 #include "core/settings/settings_table.h"
@@ -12,93 +13,117 @@
 namespace lrsm {
 namespace {
 
-Frame::LightReport reportLight(const Rsm& rsm, const Lrsm& lrsm)
+/// What the eye's passes read, and no more: voxels as far as the method and the direct light go.
+struct World {
+    OpacityPyramid opacity;
+    std::vector<Rsm> rsms;
+};
+
+World buildWorld(const Scene& scene, const Requirements& needs, const Settings& settings, const WorldReads& reads, PassLog& log)
 {
-    Frame::LightReport report;
-    report.raster = rsm.raster;
-    report.conversions = rsm.conversions;
-    report.conversions += lrsm.conversions;
-    report.ranges = lrsm.ranges;
-    report.validTexelsPerLayer = lrsm.validTexelsPerLayer;
-    report.layersAsked = lrsm.layersAsked;
-    report.negativeVariances = lrsm.negativeVariances;
-    return report;
+    World world;
+    const bool mips = reads.mips || settings.direct.shadows == Shadows::cone;
+    if (reads.bits || mips) world.opacity.base = log.run("voxelize", mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, settings.voxel); });
+    if (mips) world.opacity = log.run("voxel mips", kWorldPass, [&] { return buildPyramid(std::move(world.opacity.base), settings.voxel); });
+    for (const Light& light : scene.lights)
+        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass, [&] { return renderRsm(scene, light, needs, settings.rsm); }));
+    return world;
 }
 
-constexpr int kPassesPerFrame = 8, kPassesPerLight = 2;
-
-}  // namespace
-
-Frame renderFrame(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const RenderOptions& options)
+/// From gathered light to the picture.
+void finish(Frame& frame, const Camera& camera, Gathered light, PassLog& log)
 {
-    const FloatState state;
-    checkScene(scene);
-    validate(settings);
-    Frame frame;
-    const FrameObserver nobody;
-    const FrameObserver& observer = options.observer ? *options.observer : nobody;
-    PassLog log(options, kPassesPerFrame + kPassesPerLight * static_cast<int>(scene.lights.size()));
-
-    // Occlusion: binary voxels and their mips.
-    BitGrid occupied = log.run("voxelize", [&] { return voxelize(scene, settings.voxel); });
-    frame.voxelsSet = occupied.countOccupied();
-    const OpacityPyramid opacity = log.run("voxel mips", [&] { return buildPyramid(std::move(occupied), settings.voxel); });
-    if (observer.opacity) observer.opacity(opacity);
-
-    // Light: an RSM a light, split into pre-filtered layers.
-    std::vector<Rsm> rsms;
-    std::vector<Lrsm> lrsms;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const std::string number = " " + std::to_string(i);
-        rsms.push_back(log.run("rsm" + number, [&] { return renderRsm(scene, scene.lights[i], needs, settings.rsm); }));
-        lrsms.push_back(log.run("lrsm" + number, [&] { return buildLrsm(rsms.back(), settings.layers); }));
-        frame.lights.push_back(reportLight(rsms.back(), lrsms.back()));
-        if (observer.rsm) observer.rsm(i, rsms.back());
-        if (observer.lrsm) observer.lrsm(i, lrsms.back());
-    }
-
-    // Eye: the visible surfaces, their direct light, and the cones.
-    frame.gbuffer = log.run("gbuffer", [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
-    frame.direct = log.run("direct", [&] { return traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance; });
-    ConeRecord record;
-    Gathered gathered =
-        log.run("cones", [&] { return traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones, observer.cones ? &record : nullptr); });
-    if (observer.cones) observer.cones(gathered, record);
-    if (options.replaceDiffuse)
-        gathered = log.run("rays", [&] {
-            options.replaceDiffuse(frame.gbuffer, opacity, lrsms, gathered);
-            return std::move(gathered);
-        });
-    else if (settings.cones.filter)
-        gathered.irradiance = log.run("filter", [&] { return filterIrradiance(gathered.irradiance, frame.gbuffer); });
-
-    // Picture.
-    frame.combined = log.run("composite", [&] {
-        IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, gathered.irradiance, gathered.specular);
+    frame.irradiance = std::move(light.irradiance);
+    if (light.filter4x4) frame.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(frame.irradiance, frame.gbuffer); });
+    frame.combined = log.run("composite", kPicturePass, [&] {
+        IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, frame.irradiance, light.specular);
         Image<Vec3> sum = composite(frame.direct, indirect);
         frame.indirectDiffuse = std::move(indirect.diffuse);
         frame.indirectSpecular = std::move(indirect.specular);
         return sum;
     });
-    frame.irradiance = std::move(gathered.irradiance);
-    frame.opacity = std::move(gathered.opacity);
-    frame.cones = gathered.counts;
-    frame.gbufferRaster = frame.gbuffer.raster;
+    frame.opacity = std::move(light.opacity);
     frame.passes = std::move(log.reports);
+}
+
+GatherMethod chosenMethod(const Settings& settings, const RenderOptions& options)
+{
+    return options.method.gather ? options.method : methodOf(settings.method);
+}
+
+/// For the progress bar: voxels and their mips, G-buffer, direct, filter, composite; the method's are counted by what it predicts, and its gather.
+std::size_t expectedPasses(const Scene& scene)
+{
+    constexpr std::size_t kOfTheFrame = 6, kGather = 1, kPerLight = 2;
+    return kOfTheFrame + kGather + kPerLight * scene.lights.size();
+}
+
+}  // namespace
+
+GatherMethod methodOf(Method method)
+{
+    switch (method) {
+    case Method::lrsm: return lrsmMethod();
+    }
+    throw InputError("method", "is none of the known");
+}
+
+Requirements prepare(const Scene& scene, const Settings& settings)
+{
+    checkScene(scene);
+    validate(settings);
+    return analyseRequirements(scene, settings.force);
+}
+
+Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& settings, const RenderOptions& options)
+{
+    const FloatState state;
+    Frame frame;
+    frame.needs = prepare(scene, settings);
+    const Requirements& needs = frame.needs;
+    const GatherMethod method = chosenMethod(settings, options);
+    PassLog log(options.watch, expectedPasses(scene));
+
+    // What is there: occlusion as voxels, light as a reflective shadow map a light.
+    const World world = buildWorld(scene, needs, settings, method.reads, log);
+
+    // What the eye sees, and its direct light.
+    frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
+    frame.direct =
+        log.run("direct", kPicturePass, [&] { return traceDirect(frame.gbuffer, scene, camera, world.rsms, &world.opacity, needs, settings.direct).radiance; });
+
+    // Indirect light, by the chosen method, and the picture.
+    Gathered light = method.gather({scene, camera, needs, settings, frame.gbuffer, world.rsms, world.opacity}, log);
+    finish(frame, camera, std::move(light), log);
     return frame;
 }
 
-std::string explainPixel(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const RenderOptions& options, int x,
-                         int y)
+std::string explainPixel(const Scene& scene, const Camera& camera, const Settings& settings, const RenderOptions& options, int x, int y)
 {
     const FloatState state;
-    checkScene(scene);
-    validate(settings);
-    const OpacityPyramid opacity = buildPyramid(voxelize(scene, settings.voxel), settings.voxel);
-    std::vector<Lrsm> lrsms;
-    for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, settings.rsm), settings.layers));
+    const Requirements needs = prepare(scene, settings);
+    const GatherMethod method = chosenMethod(settings, options);
+    if (!method.explain) throw InputError("--pixel", "this method explains no pixel");
+    const PassWatch nobody{.hashPasses = false, .progress = {}, .observe = {}};
+    PassLog log(nobody);
+    const World world = buildWorld(scene, needs, settings, method.reads, log);
     const GBuffer gbuffer = renderGBuffer(scene, camera, needs, {options.width, options.height});
-    return explainCones(gbuffer, camera, opacity, lrsms, needs, settings.cones, x, y);
+    return method.explain({scene, camera, needs, settings, gbuffer, world.rsms, world.opacity}, x, y);
+}
+
+std::vector<MemoryRow> predictMemory(const MemoryQuestion& question)
+{
+    const Settings& settings = question.settings;
+    const GatherMethod method = methodOf(settings.method);
+    std::vector<MemoryRow> rows = predictVoxels(settings.voxel, method.reads.bits, method.reads.mips || settings.direct.shadows == Shadows::cone);
+    const std::vector<MemoryRow> maps = predictRsms(settings.rsm, question.scene.lights.size());
+    rows.insert(rows.end(), maps.begin(), maps.end());
+    if (method.predict) {
+        const std::vector<MemoryRow> own = method.predict(question);
+        rows.insert(rows.end(), own.begin(), own.end());
+    }
+    rows.push_back(predictGBuffer(question));
+    return rows;
 }
 
 }  // namespace lrsm

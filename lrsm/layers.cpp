@@ -52,6 +52,26 @@ float smoothstep(float t)
 
 }  // namespace
 
+Counters countersOf(const Lrsm& lrsm)
+{
+    Counters counters = {{"layers_asked", double(lrsm.layersAsked)},
+                         {"layers_kept", double(lrsm.layers())},
+                         {"half_saturations", static_cast<double>(lrsm.conversions.halfSaturations)},
+                         {"nans", static_cast<double>(lrsm.conversions.nans)},
+                         {"negative_variances", static_cast<double>(lrsm.negativeVariances)}};
+    for (std::size_t i = 0; i < lrsm.ranges.size(); ++i) {
+        const LayerRange& range = lrsm.ranges[i];
+        const auto add = [&](const char* name, double value) { counters.push_back({"layer" + std::to_string(i) + "_" + name, value}); };
+        add("depth_min", double(range.depthMin));
+        add("depth_max", double(range.depthMax));
+        add("n_dot_l_min", double(range.nDotLMin));
+        add("n_dot_l_max", double(range.nDotLMax));
+        add("delta", double(range.delta));
+        add("valid_texels", i < lrsm.validTexelsPerLayer.size() ? static_cast<double>(lrsm.validTexelsPerLayer[i]) : 0.0);
+    }
+    return counters;
+}
+
 std::vector<LayerRange> partition(const Rsm& rsm, const LayerSettings& settings)
 {
     const Vec2 depths = settings.fitRanges ? fittedDepths(rsm) : Vec2(0.0f, 1.0f);

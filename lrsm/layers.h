@@ -42,10 +42,17 @@ struct Lrsm {
     int layers() const { return int(ranges.size()); }
     int resolutionAt(int level) const { return baseResolution >> level; }
     const LrsmTexel* level(int layer, int lod) const { return texels.data() + std::size_t(layer) * texelsPerLayer + levelOffset[std::size_t(lod)]; }
-    std::size_t byteSize() const { return texels.size() * sizeof(LrsmTexel); }
-    /// In Table 1's formats: 24 bytes a texel.
-    std::size_t gpuBytes() const { return texels.size() * 24; }
+    static constexpr std::size_t kGpuTexelBytes = 24;  ///< in Table 1's formats
 };
+
+template <class Visit>
+void forEachArray(const Lrsm& lrsm, Visit&& visit)
+{
+    visit(lrsm.texels, ArrayTraits{lrsm.texels.size() * Lrsm::kGpuTexelBytes});
+}
+
+/// Layers asked for and kept, each kept layer's ranges and texels, and what was saturated, NaN, or came out with a negative variance.
+Counters countersOf(const Lrsm& lrsm);
 
 /// Bytes that a layer of an LRSM for this RSM resolution holds (x layers kept = byteSize).
 std::size_t predictLayerBytes(int rsmResolution);

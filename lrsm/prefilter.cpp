@@ -1,7 +1,6 @@
 // Sec. 4.2, 4.3 and 5 of Sugihara, Rauwendaal, Salvi: Layered Reflective Shadow Maps for Voxel-based Indirect Illumination, HPG 2014.
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "lrsm/layers.h"
 #include "lrsm/sample.h"
 
@@ -277,7 +276,7 @@ std::size_t predictLayerBytes(int rsmResolution)
 
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
 {
-    validate(settings);
+    assert(settings.depthLayers >= 1 && settings.normalLayers >= 1 && settings.overlap >= 0.0f);
     const std::vector<LayerRange> all = partition(rsm, settings);
     const Classifier layersOf(all, std::max(settings.normalLayers, 1));
     const std::vector<TexelCounts> counts = countTexels(rsm, layersOf, all.size());

@@ -6,7 +6,9 @@
 #include "core/raster/draw_scene.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/light.h"
-#include "core/settings/settings_table.h"
+
+#include <bit>
+#include <cassert>
 
 namespace lrsm {
 
@@ -42,9 +44,17 @@ void toHalf(RsmTexel& texel, HalfRounding rounding, ConversionCounts& counts)
 
 }  // namespace
 
+Counters countersOf(const Rsm& rsm)
+{
+    Counters counters = countersOf(rsm.raster);
+    counters.push_back({"half_saturations", static_cast<double>(rsm.conversions.halfSaturations)});
+    counters.push_back({"nans", static_cast<double>(rsm.conversions.nans)});
+    return counters;
+}
+
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings)
 {
-    validate(settings);
+    assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)) && settings.resolution >= 2);
     checkBounds(scene.bounds);
     checkLight(light);
     checkMaterials(scene);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/arrays.h"
 #include "core/base/formats.h"
 #include "core/base/image.h"
 #include "core/raster/rasterize.h"
@@ -23,11 +24,21 @@ struct Rsm {
     RasterCounts raster;
     ConversionCounts conversions;
 
-    std::size_t byteSize() const { return texels.byteSize() + depthLinear.byteSize(); }
-    /// The same in the GPU's formats: two 16-bit x 4 textures and a 32-bit depth.
-    static std::size_t gpuBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * 20; }
+    /// In the GPU's formats: two textures of 16 bits x 4, and a 32-bit depth.
+    static constexpr std::size_t kGpuTexelBytes = 16, kGpuDepthBytes = 4;
+    static std::size_t predictGpuBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * (kGpuTexelBytes + kGpuDepthBytes); }
     static std::size_t predictBytes(int resolution) { return std::size_t(resolution) * std::size_t(resolution) * (sizeof(RsmTexel) + sizeof(float)); }
 };
+
+template <class Visit>
+void forEachArray(const Rsm& rsm, Visit&& visit)
+{
+    visit(rsm.texels.texels, ArrayTraits{rsm.texels.texels.size() * Rsm::kGpuTexelBytes});
+    visit(rsm.depthLinear.texels, ArrayTraits{rsm.depthLinear.texels.size() * Rsm::kGpuDepthBytes});
+}
+
+/// Triangles, and what the conversion to half saturated or found to be NaN.
+Counters countersOf(const Rsm& rsm);
 
 /// Eq. 2's integrand at a texel: rho L_d <n.l> / pi, W/(m^2 sr), for the irradiance L_d of a delta light on a plane that faces it.
 /// Relative error <= kReflectedRadianceMaxError.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/base/arrays.h"
+#include "core/base/counters.h"
 #include "core/base/math.h"
 
 #include <cstddef>
@@ -42,7 +44,30 @@ struct BitGrid {
         return (bricks[brickIndex(x, y, z)] >> bitIndex(x, y, z)) & 1u;
     }
     std::uint64_t countOccupied() const;
-    std::size_t byteSize() const { return bricks.size() * sizeof(std::uint64_t); }
 };
+
+inline std::size_t predictBitGridBytes(int resolution)
+{
+    const auto n = static_cast<std::size_t>(BitGrid::bricksPerEdge(resolution));
+    return n * n * n * sizeof(std::uint64_t);
+}
+
+/// A GPU has no 1-bit format: one byte a voxel (Sec. 5).
+inline std::size_t predictBitGridGpuBytes(int resolution)
+{
+    const auto n = static_cast<std::size_t>(resolution);
+    return n * n * n;
+}
+
+template <class Visit>
+void forEachArray(const BitGrid& grid, Visit&& visit)
+{
+    visit(grid.bricks, ArrayTraits{predictBitGridGpuBytes(grid.frame.resolution)});
+}
+
+inline Counters countersOf(const BitGrid& grid)
+{
+    return {{"voxels_set", static_cast<double>(grid.countOccupied())}};
+}
 
 }  // namespace lrsm

@@ -45,11 +45,6 @@ float OpacityPyramid::value(int level, int axis, int x, int y, int z) const
     return storage == Storage::gpu ? floatFromUnorm8(unorm8[i]) : float32[i];
 }
 
-std::size_t OpacityPyramid::byteSize() const
-{
-    return base.byteSize() + unorm8.size() + float32.size() * sizeof(float) + emptyLevels.size();
-}
-
 float densityScale(const OpacityPyramid& pyramid, int level)
 {
     if (pyramid.axes == OpacityAxes::isotropic) return 1.0f;
@@ -68,7 +63,7 @@ OpacityPyramid buildPyramid(BitGrid base, const VoxelSettings& settings)
     pyramid.levelOffset = std::move(layout.levelOffset);
 
     requireMemory(
-        predictPyramidBytes({.resolution = pyramid.base.frame.resolution, .axes = settings.axes, .storage = settings.storage}) - pyramid.base.byteSize(),
+        predictPyramidBytes({.resolution = pyramid.base.frame.resolution, .axes = settings.axes, .storage = settings.storage}) - bytesOf(pyramid.base),
         "opacity pyramid", "lower voxel_resolution");
     const std::size_t values = layout.texels * std::size_t(pyramid.channels());
     try {

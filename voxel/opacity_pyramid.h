@@ -43,9 +43,17 @@ struct OpacityPyramid {
     }
     /// Stored value in [0, 1], decoded; level 0: the bit. `axis` 0 for isotropic. Coordinates inside the level.
     float value(int level, int axis, int x, int y, int z) const;
-    /// All that is held: bits, levels and emptyLevels.
-    std::size_t byteSize() const;
 };
+
+/// UNORM8 on a GPU, whatever is held here.
+template <class Visit>
+void forEachArray(const OpacityPyramid& pyramid, Visit&& visit)
+{
+    forEachArray(pyramid.base, visit);
+    visit(pyramid.unorm8, ArrayTraits{pyramid.unorm8.size()});
+    visit(pyramid.float32, ArrayTraits{pyramid.float32.size()});
+    visit(pyramid.emptyLevels, ArrayTraits{0, false});
+}
 
 /// 1 for the isotropic pyramid and level 0; 2^-min(level, 3) for directional ones.
 float densityScale(const OpacityPyramid& pyramid, int level);

@@ -4,9 +4,10 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/scene/check_scene.h"
-#include "core/settings/settings_table.h"
 #include "voxel/voxelize_triangle.h"
 
+#include <bit>
+#include <cassert>
 #include <new>
 
 namespace lrsm {
@@ -70,7 +71,7 @@ void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Cor
 
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 {
-    validate(settings);
+    assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)));
     checkBounds(scene.bounds);
     BitGrid grid = emptyGrid(fitVoxelFrame(scene.bounds, settings.resolution));
     for (const Mesh& mesh : scene.meshes) {

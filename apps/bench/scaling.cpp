@@ -12,6 +12,14 @@
 namespace lrsm {
 namespace {
 
+constexpr const char* kCounters[] = {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept"};
+
+const std::vector<std::string>& measuredPasses()
+{
+    static const std::vector<std::string> names = {"voxelize", "voxel mips", "rsm", "lrsm", "gbuffer", "direct", "cones", "filter", "composite"};
+    return names;
+}
+
 constexpr std::array<const char*, 3> kColumnsOfPass = {"_cpu_ms", "_ms", "_bytes"};
 
 std::size_t passIndex(const std::string& name)
@@ -29,8 +37,8 @@ std::vector<std::string> makeSeriesNames()
         std::replace(pass.begin(), pass.end(), ' ', '_');
         for (const char* what : kColumnsOfPass) names.push_back(pass + what);
     }
-    for (const char* name : {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept", "bytes", "gpu_bytes"})
-        names.emplace_back(name);
+    for (const char* name : kCounters) names.emplace_back(name);
+    names.insert(names.end(), {"bytes", "gpu_bytes"});
     return names;
 }
 
@@ -41,9 +49,8 @@ ScalingSample renderPoint(const ScalingAxis& axis, std::size_t index, int repeat
     RenderOptions options;
     options.width = point.width;
     options.height = point.height;
-    options.hashPasses = false;
-    const Requirements needs = analyseRequirements(*point.scene, point.settings.force);
-    return {index, repeat, scalingValues(renderFrame(*point.scene, axis.camera, needs, point.settings, options))};
+    options.watch.hashPasses = false;
+    return {index, repeat, scalingValues(renderFrame(*point.scene, axis.camera, point.settings, options))};
 }
 
 ScalingCurve curveOf(const std::string& name, std::size_t series, const std::vector<std::vector<const ScalingSample*>>& byPoint, const std::vector<double>& x)
@@ -96,21 +103,15 @@ std::vector<double> scalingValues(const Frame& frame)
         sums[0] += pass.cpuMilliseconds;
         sums[1] += pass.milliseconds;
         sums[2] += static_cast<double>(pass.bytes);
-        if (pass.name == "voxelize") continue;  // its grid goes on as the pyramid's base
+        if (!pass.traits.resident && pass.name == "voxelize") continue;  // its grid goes on as the pyramid's base
         bytes += pass.bytes;
         gpuBytes += pass.gpuBytes;
     }
-    std::uint64_t drawn = frame.gbufferRaster.drawn;
-    std::size_t layers = 0;
-    for (const Frame::LightReport& light : frame.lights) {
-        drawn += light.raster.drawn;
-        layers += light.ranges.size();
-    }
     std::vector<double> values = {frameCpu, frameWall};
     for (const auto& sums : passes) values.insert(values.end(), sums.begin(), sums.end());
-    for (const std::uint64_t count : {frame.cones.cones, frame.cones.steps, frame.cones.voxelTaps, frame.cones.lrsmSamples, frame.voxelsSet, drawn,
-                                      std::uint64_t(layers), std::uint64_t(bytes), std::uint64_t(gpuBytes)})
-        values.push_back(static_cast<double>(count));
+    for (const char* name : kCounters) values.push_back(counterSum(frame.passes, name));
+    values.push_back(static_cast<double>(bytes));
+    values.push_back(static_cast<double>(gpuBytes));
     return values;
 }
 

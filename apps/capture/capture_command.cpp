@@ -5,6 +5,7 @@
 #include "apps/common/describe.h"
 #include "apps/common/memory.h"
 #include "apps/common/progress.h"
+#include "conetrace/lrsm/memory.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
@@ -74,7 +75,7 @@ int run(const Options& options)
         .width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds, .progress = [&](const std::string& pass, double fraction) {
             progress.show(pass, fraction);
         }};
-    const std::size_t predicted = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, countLayersKept(scene, needs, settings)));
+    const std::size_t predicted = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, layersKept({scene, needs, settings, size.x, size.y})));
     refuseFullDisk(folder, predicted);
     if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(predicted) << std::endl;
 

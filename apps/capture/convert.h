@@ -1,10 +1,11 @@
 #pragma once
 
 #include "apps/capture/capture.h"
+#include "conetrace/lrsm/gather.h"
 #include "conetrace/render.h"
 
 /// Each pass's output to its buffers, and back: from a capture (or a candidate's buffers laid over one) any pass can be run anew on what
-/// the pass before it left. What comes back has the very bits that went in: equal hashes (hashOf, pass_log.h).
+/// the pass before it left. What comes back has the very bits that went in: equal hashes (hashOf, arrays.h).
 namespace lrsm {
 
 /// Every buffer of a frame, described but empty: names, shapes, meanings, tolerances. `layersStored` has one entry a light.
@@ -17,7 +18,8 @@ void toBuffers(const OpacityPyramid& opacity, std::vector<Buffer>& buffers);
 void toBuffers(const Rsm& rsm, std::size_t light, std::vector<Buffer>& buffers);
 void toBuffers(const Lrsm& lrsm, std::size_t light, std::vector<Buffer>& buffers);
 void toBuffers(const GBuffer& gbuffer, std::vector<Buffer>& buffers);
-void toBuffers(const Gathered& gathered, const ConeRecord& cones, std::vector<Buffer>& buffers);
+void toBuffers(const Gathered& gathered, std::vector<Buffer>& buffers);
+void toBuffers(const ConeRecord& cones, std::vector<Buffer>& buffers);
 void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<Buffer>& buffers);
 
 // From buffers. Each throws InputError naming the buffer that is not in the capture.

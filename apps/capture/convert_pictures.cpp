@@ -52,11 +52,15 @@ GBuffer gbufferFromCapture(const Capture& capture)
     return gbuffer;
 }
 
-void toBuffers(const Gathered& gathered, const ConeRecord& cones, std::vector<Buffer>& buffers)
+void toBuffers(const Gathered& gathered, std::vector<Buffer>& buffers)
 {
-    copyTo(buffers, "cones.diffuse", cones.diffuse);
     copyTo(buffers, "cones.irradiance", gathered.irradiance.texels);
     copyTo(buffers, "cones.opacity", gathered.opacity.texels);
+}
+
+void toBuffers(const ConeRecord& cones, std::vector<Buffer>& buffers)
+{
+    copyTo(buffers, "cones.diffuse", cones.diffuse);
     copyTo(buffers, "cones.specular", cones.specular.texels);
 }
 

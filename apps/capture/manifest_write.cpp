@@ -175,9 +175,9 @@ Json conesJson(const Capture& c, const GatherPlan& plan)
     return {{"a_pixel", cones.count * cones.setsPerPixel}, {"rotations", kRotations}, {"rings", rings}, {"specular", specular}};
 }
 
-Json gaussianJson(const GatherPlan& plan)
+Json gaussianJson(const NormalCdf& phi)
 {
-    Json json = {{"table_half_width", kTableHalfWidth}, {"table_entries", plan.phi.table().size()}};
+    Json json = {{"table_half_width", kTableHalfWidth}, {"table_entries", phi.table().size()}};
     json["polynomial"] = {{"numerator", kCdfNumerator}, {"denominator", kCdfDenominator}, {"limit", kCdfLimit}};
     return json;
 }
@@ -230,7 +230,8 @@ Json listOf(const std::vector<T>& items, ToJson&& toJson)
 
 Json manifestJson(const Capture& c)
 {
-    const GatherPlan plan = makeTables(c.needs, c.settings).plan;
+    const CaptureTables tables = makeTables(c.needs, c.settings);
+    const GatherPlan& plan = tables.plan;
     return {{"format", kCaptureFormat},
             {"format_version", kCaptureFormatVersion},
             {"version", c.version},
@@ -242,7 +243,7 @@ Json manifestJson(const Capture& c)
             {"grid", gridJson(c)},
             {"lights", listOf(c.lights, lightJson)},
             {"cones", conesJson(c, plan)},
-            {"gaussian", gaussianJson(plan)},
+            {"gaussian", gaussianJson(tables.phi)},
             {"constants", constantsJson()},
             {"passes", listOf(c.passes,
                               [](const CapturedPass& p) {

@@ -71,9 +71,9 @@ std::vector<std::string> inputsOf(const std::string& pass, std::size_t lights, c
 }
 
 /// Which of the partition's layers the LRSM holds: they come in the same order.
-CapturedLight capturedLight(const Light& light, const Rsm& rsm, const Lrsm& lrsm, const LayerSettings& settings)
+CapturedLight capturedLight(const Light& light, const LightProjection& projection, const std::vector<LayerRange>& partition, const Lrsm& lrsm)
 {
-    CapturedLight captured{light, rsm.projection, partition(rsm, settings), {}, lrsm.validTexelsPerLayer};
+    CapturedLight captured{light, projection, partition, {}, lrsm.validTexelsPerLayer};
     int next = 0;
     for (const LayerRange& range : captured.partition) {
         const bool stored = next < lrsm.layers() && lrsm.ranges[static_cast<std::size_t>(next)] == range;
@@ -135,32 +135,38 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     toBuffers(scene, buffers);
     addTables(needs, settings, buffers);
 
-    FrameObserver observer;
-    observer.opacity = [&](const OpacityPyramid& opacity) {
-        capture.grid = opacity.base.frame;
-        toBuffers(opacity, buffers);
-    };
-    const Rsm* lastRsm = nullptr;  // alive until its LRSM is made
-    observer.rsm = [&](std::size_t light, const Rsm& rsm) {
-        lastRsm = &rsm;
-        toBuffers(rsm, light, buffers);
-    };
-    observer.lrsm = [&](std::size_t light, const Lrsm& lrsm) {
-        capture.lights.push_back(capturedLight(scene.lights[light], *lastRsm, lrsm, settings.layers));
-        const std::string pass = "lrsm " + std::to_string(light);
+    std::vector<LightProjection> projections;
+    std::vector<std::vector<LayerRange>> partitions;
+    const auto keepLrsm = [&](const std::string& pass, const Lrsm& lrsm) {
+        const std::size_t light = capture.lights.size();
+        capture.lights.push_back(capturedLight(scene.lights[light], projections[light], partitions[light], lrsm));
         if (lrsm.layers() == 0) std::erase_if(buffers, [&](const Buffer& b) { return b.pass == pass; });
         for (Buffer& buffer : buffers)
             if (buffer.pass == pass) buffer.shape[0] = static_cast<std::size_t>(lrsm.layers());
         toBuffers(lrsm, light, buffers);
     };
-    observer.cones = [&](const Gathered& gathered, const ConeRecord& cones) { toBuffers(gathered, cones, buffers); };
 
-    RenderOptions render{
-        .width = options.width, .height = options.height, .hashPasses = true, .progress = options.progress, .replaceDiffuse = {}, .observer = &observer};
-    const Frame frame = renderFrame(scene, camera, needs, settings, render);
+    RenderOptions render{.width = options.width, .height = options.height, .watch = {.progress = options.progress, .observe = {}}, .method = {}};
+    render.watch.observe = [&](const std::string& pass, const PassOutput& output) {
+        if (const auto* opacity = output.as<OpacityPyramid>()) {
+            capture.grid = opacity->base.frame;
+            toBuffers(*opacity, buffers);
+        } else if (const auto* rsm = output.as<Rsm>()) {
+            toBuffers(*rsm, projections.size(), buffers);
+            projections.push_back(rsm->projection);
+            partitions.push_back(partition(*rsm, settings.layers));
+        } else if (const auto* lrsm = output.as<Lrsm>()) {
+            keepLrsm(pass, *lrsm);
+        } else if (const auto* gathered = output.as<Gathered>()) {
+            toBuffers(*gathered, buffers);
+        } else if (const auto* cones = output.as<ConeRecord>()) {
+            toBuffers(*cones, buffers);
+        }
+    };
+    const Frame frame = renderFrame(scene, camera, settings, render);
     toBuffers(frame.gbuffer, buffers);
     toBuffers(frame.direct, "direct.radiance", buffers);
-    toBuffers(frame.irradiance, "filter.irradiance", buffers);
+    if (settings.cones.filter) toBuffers(frame.irradiance, "filter.irradiance", buffers);
     toBuffers(frame.indirectDiffuse, "composite.diffuse", buffers);
     toBuffers(frame.indirectSpecular, "composite.specular", buffers);
     toBuffers(frame.combined, "composite.combined", buffers);

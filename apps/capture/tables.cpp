@@ -19,13 +19,6 @@ Table tableOf(std::string name, Dtype dtype, std::vector<std::size_t> shape, con
     return table;
 }
 
-GatherPlan planFor(const Requirements& needs, const Settings& settings)
-{
-    OpacityPyramid grid;  // schedules depend on the grid's resolution alone
-    grid.base.frame.resolution = settings.voxel.resolution;
-    return planGather(grid, needs, settings.cones);
-}
-
 Table rotations(Rotation rotation)
 {
     std::vector<std::uint8_t> pattern;
@@ -58,12 +51,14 @@ void addSchedules(CaptureTables& tables)
 
 CaptureTables makeTables(const Requirements& needs, const Settings& settings)
 {
-    CaptureTables tables{planFor(needs, settings), {}, {}, {}, {}, {}, {}};
+    CaptureTables tables;
+    tables.plan = planGather(settings.cones, needs, settings.voxel.resolution);
+    tables.phi = NormalCdf(settings.cones.gaussian, settings.cones.gaussianTableSize);
     const auto cones = static_cast<std::size_t>(tables.plan.cones.count);
     tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);
     tables.rotation = rotations(settings.cones.rotation);
     addSchedules(tables);
-    if (const std::vector<float>& phi = tables.plan.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
+    if (const std::vector<float>& phi = tables.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
     if (needs.specular)
         tables.specularAlbedo =
             tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "apps/capture/npy.h"
-#include "conetrace/lrsm/gather_setup.h"
+#include "conetrace/frame/gather_plan.h"
+#include "lrsm/gaussian_visibility.h"
 
 namespace lrsm {
 
@@ -15,6 +16,7 @@ struct Table {
 /// What a frame works out once from its settings, as arrays: pass "tables".
 struct CaptureTables {
     GatherPlan plan;
+    NormalCdf phi;
     Table directions, rotation, schedules, steps, gaussian, specularAlbedo;
 
     std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo}; }

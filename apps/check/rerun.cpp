@@ -83,7 +83,8 @@ void rerunCones(const Capture& inputs, std::vector<Buffer>& outputs)
     ConeRecord record;
     const Gathered gathered =
         traceCones(gbufferFromCapture(inputs), inputs.camera, opacityFromCapture(inputs), lrsms, inputs.needs, inputs.settings.cones, &record);
-    toBuffers(gathered, record, outputs);
+    toBuffers(gathered, outputs);
+    toBuffers(record, outputs);
 }
 
 void rerunDirect(const Capture& inputs, std::vector<Buffer>& outputs)

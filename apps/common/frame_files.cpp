@@ -4,6 +4,7 @@
 #include "core/imageio/image_io.h"
 #include "core/settings/settings_table.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -12,39 +13,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json rasterJson(const RasterCounts& counts)
+Json countersJson(const Counters& counters)
 {
-    return {{"submitted", counts.submitted}, {"drawn", counts.drawn}, {"clipped", counts.clipped}, {"culled", counts.culled}, {"dropped", counts.dropped}};
-}
-
-Json layerJson(const LayerRange& range, std::uint64_t validTexels)
-{
-    return {{"depth", {range.depthMin, range.depthMax}}, {"n_dot_l", {range.nDotLMin, range.nDotLMax}}, {"delta", range.delta}, {"valid_texels", validTexels}};
-}
-
-Json lightCountersJson(const Frame::LightReport& light)
-{
-    Json layers = Json::array();
-    for (std::size_t i = 0; i < light.ranges.size(); ++i)
-        layers.push_back(layerJson(light.ranges[i], i < light.validTexelsPerLayer.size() ? light.validTexelsPerLayer[i] : 0));
-    return {{"raster", rasterJson(light.raster)},
-            {"layers_asked", light.layersAsked},
-            {"layers_kept", light.ranges.size()},
-            {"layers", layers},
-            {"half_saturations", light.conversions.halfSaturations},
-            {"nans", light.conversions.nans},
-            {"negative_variances", light.negativeVariances}};
-}
-
-Json countersJson(const Frame& frame)
-{
-    Json lights = Json::array();
-    for (const Frame::LightReport& light : frame.lights) lights.push_back(lightCountersJson(light));
-    return {{"voxels_set", frame.voxelsSet},
-            {"gbuffer_raster", rasterJson(frame.gbufferRaster)},
-            {"lights", lights},
-            {"cones",
-             {{"cones", frame.cones.cones}, {"steps", frame.cones.steps}, {"voxel_taps", frame.cones.voxelTaps}, {"lrsm_samples", frame.cones.lrsmSamples}}}};
+    Json json = Json::object();
+    for (const Counter& counter : counters) {
+        const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
+        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : Json(counter.value);
+    }
+    return json;
 }
 
 Json passesJson(const Frame& frame)
@@ -57,7 +33,9 @@ Json passesJson(const Frame& frame)
                           {"bytes", pass.bytes},
                           {"gpu_format_bytes", pass.gpuBytes},
                           {"sha256", pass.sha256},
-                          {"non_finite", pass.nonFinite}});
+                          {"resident", pass.traits.resident},
+                          {"non_finite", pass.nonFinite},
+                          {"counters", countersJson(pass.counters)}});
     return passes;
 }
 
@@ -114,11 +92,10 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
             {"radiance", record.radiance},
             {"scene", sceneJson(record.scene, record.sceneHash)},
             {"camera", cameraJson(record.camera)},
-            {"requires", requirementsJson(record.needs)},
+            {"requires", requirementsJson(frame.needs)},
             {"milliseconds", milliseconds},
             {"passes", passesJson(frame)},
-            {"memory", memoryJson(record.memory)},
-            {"counters", countersJson(frame)}};
+            {"memory", memoryJson(record.memory)}};
 }
 
 void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& record, const Json& json)

@@ -15,7 +15,6 @@ namespace lrsm {
 struct FrameRecord {
     const Scene& scene;
     const Camera& camera;
-    const Requirements& needs;
     const Settings& settings;
     std::string preset;
     std::string sceneHash;

@@ -43,9 +43,7 @@ int runInfo(const InfoArguments& options)
     const Requirements needs = analyseRequirements(scene, settings.force);
     const SceneAnalysis analysis = analyseScene(scene, chosenCamera(scene, options), needs, settings, size.x, size.y);
     const std::vector<Advice> advice = adviseSettings(analysis, settings, size.x, size.y);
-    std::vector<int> layersKept;
-    for (const LightAnalysis& light : analysis.lights) layersKept.push_back(light.layers);
-    const auto memory = predictMemory(settings, needs, layersKept, size.x, size.y);
+    const auto memory = predictMemory({scene, needs, settings, size.x, size.y});
 
     if (options.json) {
         const nlohmann::ordered_json json = {{"version", LRSM_VERSION},

@@ -1,6 +1,5 @@
 #include "apps/sweep/measure.h"
 
-#include "conetrace/pass_log.h"
 #include "core/base/errors.h"
 #include "core/base/hash.h"
 #include "core/imageio/display.h"
@@ -46,7 +45,7 @@ class PassTimes {
         for (const PassReport& pass : passes) {
             wall += pass.milliseconds;
             cpu += pass.cpuMilliseconds;
-            timesOf(passFamily(pass.name)).back() += pass.milliseconds;
+            timesOf(pass).back() += pass.milliseconds;
         }
         wall_.push_back(wall);
         cpu_.push_back(cpu);
@@ -56,31 +55,33 @@ class PassTimes {
     {
         row.frame = summarize(wall_);
         row.frameCpu = median(cpu_);
-        for (const auto& [name, times] : passes_) row.passes.emplace_back(name, summarize(times));
+        for (const auto& [pass, times] : passes_) row.passes.push_back({pass.family, pass.perPixel, summarize(times)});
     }
 
   private:
-    std::vector<double>& timesOf(const std::string& name)
+    std::vector<double>& timesOf(const PassReport& pass)
     {
-        auto found = std::find_if(passes_.begin(), passes_.end(), [&](const auto& entry) { return entry.first == name; });
-        if (found == passes_.end()) found = passes_.insert(passes_.end(), {name, {}});
+        const std::string family = passFamily(pass.name);
+        auto found = std::find_if(passes_.begin(), passes_.end(), [&](const auto& entry) { return entry.first.family == family; });
+        if (found == passes_.end()) found = passes_.insert(passes_.end(), {{family, pass.traits.perPixel, {}}, {}});
         found->second.resize(repeats_, 0.0);
         return found->second;
     }
 
     std::size_t repeats_ = 0;
     std::vector<double> wall_, cpu_;
-    std::vector<std::pair<std::string, std::vector<double>>> passes_;
+    std::vector<std::pair<PassTime, std::vector<double>>> passes_;
 };
 
-/// Of what stays while the cones run: `voxelize` hands its bits on to the pyramid, the later passes make pictures.
-void addBytes(Measurement& row, const std::vector<PassReport>& passes)
+/// Bytes of what stays until the frame is done, and what all passes counted.
+void addReports(Measurement& row, const std::vector<PassReport>& passes)
 {
     for (const PassReport& pass : passes) {
-        const std::string name = passFamily(pass.name);
-        if (name != "voxel mips" && name != "rsm" && name != "lrsm" && name != "gbuffer") continue;
-        row.bytes += pass.bytes;
-        row.gpuBytes += pass.gpuBytes;
+        if (pass.traits.resident) {
+            row.bytes += pass.bytes;
+            row.gpuBytes += pass.gpuBytes;
+        }
+        for (const Counter& counter : pass.counters) addTo(row.counters, counter);
     }
 }
 
@@ -153,6 +154,7 @@ Calibration::Calibration() : scene_(makeBuiltinScene("cornell-box").value())
 Settings Calibration::settings()
 {
     Settings s;
+    s.method = Method::lrsm;
     s.voxel = {.resolution = 128, .mode = Voxelization::thin, .mipFilter = MipFilter::mean, .axes = OpacityAxes::directional, .storage = Storage::gpu};
     s.rsm = {.resolution = 256, .storage = Storage::gpu, .halfRounding = HalfRounding::d3d};
     s.layers = {.depthLayers = 2,
@@ -204,8 +206,8 @@ Calibration::Times Calibration::run() const
     RenderOptions options;
     options.width = kCalibrationWidth;
     options.height = kCalibrationHeight;
-    options.hashPasses = false;
-    const Frame frame = renderFrame(scene_, scene_.cameras.at(0), analyseRequirements(scene_, {}), settings(), options);
+    options.watch.hashPasses = false;
+    const Frame frame = renderFrame(scene_, scene_.cameras.at(0), settings(), options);
     Times times;
     for (const PassReport& pass : frame.passes) {
         times.cpu += pass.cpuMilliseconds;
@@ -218,25 +220,24 @@ Measured measureSettings(const SceneCase& sceneCase, const TruthFigures& figures
                          const MeasureOptions& options)
 {
     const int repeat = std::max(1, options.repeat);
-    RenderOptions renderOptions{.width = sceneCase.width, .height = sceneCase.height, .hashPasses = false, .progress = {}, .replaceDiffuse = {}};
+    RenderOptions renderOptions{
+        .width = sceneCase.width, .height = sceneCase.height, .watch = {.hashPasses = false, .progress = {}, .observe = {}}, .method = {}};
     int done = 0;
-    if (options.progress) renderOptions.progress = [&](const std::string&, double fraction) { options.progress((done + fraction) / repeat); };
+    if (options.progress) renderOptions.watch.progress = [&](const std::string&, double fraction) { options.progress((done + fraction) / repeat); };
 
     Measured measured{rowOf(sceneCase), {}};
     Measurement& row = measured.row;
     row.settings = settings;
-    const Requirements needs = analyseRequirements(sceneCase.scene, settings.force);
     PassTimes times;
     std::vector<double> calibrations;
     for (; done < repeat; ++done) {
         calibrations.push_back(calibration.run().cpu);
         const auto before = options.instructions ? options.instructions->count() : std::nullopt;
-        Frame frame = renderFrame(sceneCase.scene, sceneCase.camera, needs, settings, renderOptions);
+        Frame frame = renderFrame(sceneCase.scene, sceneCase.camera, settings, renderOptions);
         times.add(frame.passes);
         if (done > 0) continue;  // every frame has the same bits and the same work
         if (before) row.instructions = *options.instructions->count() - *before;
-        row.counts = frame.cones;
-        addBytes(row, frame.passes);
+        addReports(row, frame.passes);
         measured.irradiance = std::move(frame.irradiance);
     }
     calibrations.push_back(calibration.run().cpu);

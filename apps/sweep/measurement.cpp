@@ -16,13 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::pair<RowKind, const char*> kKinds[] = {
     {RowKind::preset, "preset"}, {RowKind::axis, "axis"}, {RowKind::search, "search"}, {RowKind::pathTracer, "path_tracer"}};
 
-/// "voxel mips" -> "voxel_mips_ms".
-std::string passColumn(std::string pass)
-{
-    std::replace(pass.begin(), pass.end(), ' ', '_');
-    return pass + "_ms";
-}
-
 /// JSON has no infinity and no NaN.
 Json numberJson(double value)
 {
@@ -60,6 +53,11 @@ class RowReader {
         return value.get<std::uint64_t>();
     }
 
+    const Json& object(const std::string& name) const
+    {
+        if (!entry(name).is_object()) refuse(name, "an object");
+        return entry(name);
+    }
     std::string text(const std::string& name) const
     {
         const Json& value = entry(name);
@@ -74,11 +72,11 @@ class RowReader {
     const std::string& place_;
 };
 
-void addTime(Json& json, const std::string& column, const RepeatedTime* time)
+void addTime(Json& json, const std::string& column, const RepeatedTime& time)
 {
-    json[column] = time ? numberJson(time->median) : Json();
-    json[column + "_min"] = time ? numberJson(time->min) : Json();
-    json[column + "_spread"] = time ? numberJson(time->spread) : Json();
+    json[column] = numberJson(time.median);
+    json[column + "_min"] = numberJson(time.min);
+    json[column + "_spread"] = numberJson(time.spread);
 }
 
 RepeatedTime readTime(const RowReader& reader, const std::string& column)
@@ -123,17 +121,53 @@ double PictureError::net() const
     return std::max(claimed, 0.25 * noise);
 }
 
-const std::vector<std::string>& measuredPasses()
+namespace {
+
+Json timeJson(const RepeatedTime& time)
 {
-    static const std::vector<std::string> names = {"voxelize", "voxel mips", "rsm", "lrsm", "gbuffer", "direct", "cones", "filter", "composite"};
-    return names;
+    return {{"ms", numberJson(time.median)}, {"ms_min", numberJson(time.min)}, {"ms_spread", numberJson(time.spread)}};
 }
 
-std::string passFamily(const std::string& pass)
+Json passesJson(const std::vector<PassTime>& passes)
 {
-    const std::size_t last = pass.find_last_not_of("0123456789");
-    return last != std::string::npos && last + 1 < pass.size() && pass[last] == ' ' ? pass.substr(0, last) : pass;
+    Json json = Json::object();
+    for (const PassTime& pass : passes) {
+        json[pass.family] = timeJson(pass.time);
+        json[pass.family]["per_pixel"] = pass.perPixel;
+    }
+    return json;
 }
+
+Json countersJson(const Counters& counters)
+{
+    Json json = Json::object();
+    for (const Counter& counter : counters) json[counter.name] = numberJson(counter.value);
+    return json;
+}
+
+std::vector<PassTime> readPasses(const Json& json, const std::string& place)
+{
+    std::vector<PassTime> passes;
+    for (const auto& [family, entry] : json.items()) {
+        const std::string where = place + ": passes: " + family;
+        const RowReader reader(entry, where);
+        const Json& perPixel = reader.entry("per_pixel");
+        if (!perPixel.is_boolean()) reader.refuse("per_pixel", "true or false");
+        passes.push_back({family, perPixel.get<bool>(), {reader.number("ms"), reader.number("ms_min"), reader.number("ms_spread")}});
+    }
+    return passes;
+}
+
+Counters readCounters(const Json& json, const std::string& place)
+{
+    Counters counters;
+    const std::string where = place + ": counters";
+    const RowReader reader(json, where);
+    for (const auto& [name, unused] : json.items()) counters.push_back({name, reader.number(name)});
+    return counters;
+}
+
+}  // namespace
 
 Json measurementJson(const Measurement& row)
 {
@@ -153,18 +187,12 @@ Json measurementJson(const Measurement& row)
                  {"mae", numberJson(row.error.mae)},
                  {"flip", numberJson(row.error.flip)},
                  {"noise", numberJson(row.error.noise)}};
-    addTime(json, "frame_ms", &row.frame);
+    addTime(json, "frame_ms", row.frame);
     json["frame_cpu_ms"] = numberJson(row.frameCpu);
     json["calibration_cpu_ms"] = numberJson(row.calibrationCpu);
     json["cost"] = numberJson(row.cost);
-    for (const std::string& name : measuredPasses()) {
-        const auto pass = std::find_if(row.passes.begin(), row.passes.end(), [&](const auto& entry) { return entry.first == name; });
-        addTime(json, passColumn(name), pass == row.passes.end() ? nullptr : &pass->second);
-    }
-    json["cones"] = row.counts.cones;
-    json["cone_steps"] = row.counts.steps;
-    json["voxel_taps"] = row.counts.voxelTaps;
-    json["lrsm_samples"] = row.counts.lrsmSamples;
+    json["passes"] = passesJson(row.passes);
+    json["counters"] = countersJson(row.counters);
     json["rays"] = row.rays;
     json["instructions"] = row.instructions ? Json(*row.instructions) : Json();
     json["bytes"] = row.bytes;
@@ -174,6 +202,26 @@ Json measurementJson(const Measurement& row)
     const Json settings = settingsToJson(row.settings);
     for (const auto& [key, value] : settings.items()) json[key] = traced ? Json() : value;
     return json;
+}
+
+Json measurementColumns(const Measurement& row)
+{
+    Json flat = Json::object();
+    const Json json = measurementJson(row);
+    for (const auto& [key, value] : json.items()) {
+        if (key == "passes") {
+            for (const auto& [family, times] : value.items()) {
+                std::string column = family + "_";
+                std::replace(column.begin(), column.end(), ' ', '_');
+                for (const char* figure : {"ms", "ms_min", "ms_spread"}) flat[column + figure] = times[figure];
+            }
+        } else if (key == "counters") {
+            flat.update(value);
+        } else {
+            flat[key] = value;
+        }
+    }
+    return flat;
 }
 
 Measurement measurementFromJson(const Json& json, const std::string& place)
@@ -196,9 +244,8 @@ Measurement measurementFromJson(const Json& json, const std::string& place)
     row.frameCpu = reader.number("frame_cpu_ms");
     row.calibrationCpu = reader.number("calibration_cpu_ms");
     row.cost = reader.number("cost");
-    for (const std::string& name : measuredPasses())
-        if (!reader.entry(passColumn(name)).is_null()) row.passes.emplace_back(name, readTime(reader, passColumn(name)));
-    row.counts = {reader.count("cones"), reader.count("cone_steps"), reader.count("voxel_taps"), reader.count("lrsm_samples")};
+    row.passes = readPasses(reader.object("passes"), place);
+    row.counters = readCounters(reader.object("counters"), place);
     row.rays = reader.count("rays");
     if (!reader.entry("instructions").is_null()) row.instructions = reader.count("instructions");
     row.bytes = reader.count("bytes");

@@ -29,6 +29,13 @@ struct PictureError {
     double net() const;
 };
 
+/// One family of passes in a row: its column is FAMILY_ms, spaces as underscores.
+struct PassTime {
+    std::string family;     ///< passFamily: "rsm" for "rsm 0", "rsm 1", ...
+    bool perPixel = false;  ///< work grows with the picture
+    RepeatedTime time;
+};
+
 enum class RowKind {
     preset,     ///< a preset as it is
     axis,       ///< one or more settings taken from axes
@@ -54,29 +61,27 @@ struct Measurement {
 
     PictureError error;
 
-    RepeatedTime frame;                                        ///< wall time of all passes
-    double frameCpu = 0.0;                                     ///< median processor time of all passes, all threads, ms
-    std::vector<std::pair<std::string, RepeatedTime>> passes;  ///< by name as in PassReport ("voxelize", ..., "cones"); lights summed ("rsm", "lrsm")
-    double calibrationCpu = 0.0;                               ///< processor time of the calibration frame run beside this row, ms
+    RepeatedTime frame;                         ///< wall time of all passes
+    double frameCpu = 0.0;                      ///< median processor time of all passes, all threads, ms
+    std::vector<PassTime> passes;               ///< in the frame's order; the passes of a family summed
+    double calibrationCpu = 0.0;                ///< processor time of the calibration frame run beside this row, ms
     double cost = 0.0;                          ///< frameCpu / calibrationCpu: time in calibration frames, the figure that carries between runs and machines
-    ConeCounts counts;                          ///< of one frame; 0 for the path tracer
+    Counters counters;                          ///< of one frame, by name, summed over its passes; none for the path tracer
     std::uint64_t rays = 0;                     ///< path tracer
     std::optional<std::uint64_t> instructions;  ///< of one frame, user mode, where the machine counts them
-    std::size_t bytes = 0, gpuBytes = 0;        ///< voxels, RSMs, LRSMs and G-buffer together, held; in the GPU's formats
+    std::size_t bytes = 0, gpuBytes = 0;        ///< of the resident passes (PassTraits) together, held; in the GPU's formats
     std::string irradianceSha256;               ///< equal hashes: equal bits
 };
 
-/// A flat object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min,
-/// frame_ms_spread, frame_cpu_ms, calibration_cpu_ms, cost, PASS_ms, PASS_ms_min, PASS_ms_spread for each of measuredPasses(), cones, cone_steps, voxel_taps,
-/// lrsm_samples, rays, instructions (null when unknown), bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
-/// Numbers that are not finite, and the times of passes that did not run, are null too; they read back as NaN and as no pass. Reads back to the same bits.
+/// An object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min,
+/// frame_ms_spread, frame_cpu_ms, calibration_cpu_ms, cost, passes (an object of {ms, ms_min, ms_spread, per_pixel} by family), counters (an object),
+/// rays, instructions (null when unknown), bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
+/// Passes and counters are those that the frame reported: no list of them is anywhere.
+/// Numbers that are not finite are null too; they read back as NaN. Reads back to the same bits.
 nlohmann::ordered_json measurementJson(const Measurement& row);
+/// The same flat, for tables: a pass's three columns are FAMILY_ms, FAMILY_ms_min and FAMILY_ms_spread ("voxel_mips_ms"), a counter's is its name.
+nlohmann::ordered_json measurementColumns(const Measurement& row);
 /// Throws InputError beginning with `place`.
 Measurement measurementFromJson(const nlohmann::ordered_json& json, const std::string& place);
-
-/// The passes that have a column, in the order of the frame: voxelize, voxel mips, rsm, lrsm, gbuffer, direct, cones, filter, composite.
-const std::vector<std::string>& measuredPasses();
-/// The column of a pass of PassReport: "rsm 3" is one of the lights' passes "rsm".
-std::string passFamily(const std::string& pass);
 
 }  // namespace lrsm

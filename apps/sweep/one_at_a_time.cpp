@@ -59,7 +59,9 @@ Words valuesOf(const SettingInfo& info, const Settings& base)
     }
     // A number that the list does not know: a quarter to four times the base's value, as far as its range goes.
     Words values;
-    const double value = settingsToJson(base).at(info.key).get<double>();
+    const auto json = settingsToJson(base).at(info.key);
+    if (!json.is_number()) return values;  // a choice of one
+    const double value = json.get<double>();
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
         const std::string text = nlohmann::json(value == 0.0 ? factor : value * factor).dump();
         try {

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace lrsm {
 
@@ -73,22 +74,34 @@ std::string keyByThisVersion(const Measurement& row)
 
 }  // namespace
 
-std::string csvHeader()
+std::vector<std::string> csvColumns(const std::vector<Measurement>& rows)
+{
+    std::vector<std::string> columns;
+    std::set<std::string> known;
+    const auto add = [&](const Measurement& row) {
+        const Json flat = measurementColumns(row);
+        for (const auto& [name, unused] : flat.items())
+            if (known.insert(name).second) columns.push_back(name);
+    };
+    if (rows.empty()) add(Measurement());
+    for (const Measurement& row : rows) add(row);
+    return columns;
+}
+
+std::string csvHeader(const std::vector<std::string>& columns)
 {
     std::string line;
-    const Json json = measurementJson(Measurement());
-    for (const auto& [key, unused] : json.items()) line += (line.empty() ? "" : ",") + csvField(key);
+    for (const std::string& name : columns) line += (line.empty() ? "" : ",") + csvField(name);
     return line + "\r\n";
 }
 
-std::string csvLine(const Measurement& row)
+std::string csvLine(const Measurement& row, const std::vector<std::string>& columns)
 {
     std::string line;
-    const Json json = measurementJson(row);
-    bool first = true;
-    for (const auto& [unused, value] : json.items()) {
-        line += (first ? "" : ",") + csvField(value);
-        first = false;
+    const Json flat = measurementColumns(row);
+    for (const std::string& name : columns) {
+        const auto found = flat.find(name);
+        line += (&name == &columns.front() ? "" : ",") + (found == flat.end() ? "" : csvField(*found));
     }
     return line + "\r\n";
 }
@@ -146,10 +159,11 @@ void RowStore::read()
     }
 }
 
-void RowStore::rebuildCsv() const
+void RowStore::rebuildCsv()
 {
-    std::string text = csvHeader();
-    for (const Measurement& row : rows_) text += csvLine(row);
+    columns_ = csvColumns(rows_);
+    std::string text = csvHeader(columns_);
+    for (const Measurement& row : rows_) text += csvLine(row, columns_);
     const std::string path = pathIn(folder_, "sweep.csv");
     if (fs::is_regular_file(path)) {
         const std::vector<unsigned char> found = readFile(path);
@@ -172,11 +186,18 @@ bool RowStore::add(const Measurement& row)
     byKey_.emplace(row.key, rows_.size());
     rows_.push_back(row);
 
+    // A pass that no row before had makes new columns.
+    const Json flat = measurementColumns(row);
+    const auto missing = [&](const auto& item) { return std::find(columns_.begin(), columns_.end(), item.key()) == columns_.end(); };
+    if (std::any_of(flat.items().begin(), flat.items().end(), missing)) {
+        rebuildCsv();
+        return true;
+    }
     const std::string path = pathIn(folder_, "sweep.csv");
     const int csv = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
     if (csv < 0) refuseFile(path);
     try {
-        appendWhole(csv, csvLine(row), path);
+        appendWhole(csv, csvLine(row, columns_), path);
     } catch (...) {
         ::close(csv);
         throw;

@@ -35,19 +35,21 @@ class RowStore {
 
   private:
     void read();
-    void rebuildCsv() const;
+    void rebuildCsv();
 
     std::string folder_;
     int file_ = -1;
     std::vector<Measurement> rows_;
+    std::vector<std::string> columns_;  ///< of sweep.csv
     std::map<std::string, std::size_t> byKey_;
     bool droppedTornLine_ = false;
     std::size_t otherVersions_ = 0;
 };
 
-/// RFC 4180: a header of column names, lines end with CR LF, fields with a comma, a quote or a line end are quoted; null is an empty field. `measurementJson`
-/// gives the columns.
-std::string csvHeader();
-std::string csvLine(const Measurement& row);
+/// RFC 4180: a header of column names, lines end with CR LF, fields with a comma, a quote or a line end are quoted; null, and what a row
+/// does not have, is an empty field. The columns are those of `measurementColumns`, of any row.
+std::vector<std::string> csvColumns(const std::vector<Measurement>& rows);
+std::string csvHeader(const std::vector<std::string>& columns);
+std::string csvLine(const Measurement& row, const std::vector<std::string>& columns);
 
 }  // namespace lrsm

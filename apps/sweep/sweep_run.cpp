@@ -95,7 +95,7 @@ const Measurement* SweepRun::measure(const SweepTask& task)
     };
     try {
         const Requirements needs = analyseRequirements(one.scene.scene, task.named.settings.force);
-        enforceMemoryLimit(one.scene.scene, needs, task.named.settings, one.scene.width, one.scene.height, options_.maxMemoryMegabytes);
+        enforceMemoryLimit({one.scene.scene, needs, task.named.settings, one.scene.width, one.scene.height}, options_.maxMemoryMegabytes);
         MeasureOptions options{
             .repeat = options_.repeat, .progress = [&](double fraction) { show(one, task.named.label, fraction); }, .instructions = options_.instructions};
         Measured measured = measureSettings(one.scene, one.figures, task.named.settings, calibration_, options);

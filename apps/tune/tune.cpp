@@ -3,17 +3,12 @@
 #include "core/base/errors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 namespace lrsm {
 
 namespace {
-
-/// The passes whose work goes with the number of pixels.
-constexpr std::array<std::string_view, 5> kPixelPasses = {"gbuffer", "direct", "cones", "filter", "composite"};
 
 /// A point this far over the time budget stands for all costlier ones.
 constexpr double kHopelessTime = 1.5;
@@ -229,10 +224,9 @@ double costAtSize(const Measurement& row, int width, int height)
 {
     const double pixels = double(width) * double(height) / (double(row.width) * double(row.height));
     double all = 0.0, there = 0.0;
-    for (const auto& [name, time] : row.passes) {
-        const bool goesWithPixels = std::find(kPixelPasses.begin(), kPixelPasses.end(), name) != kPixelPasses.end();
-        all += time.median;
-        there += time.median * (goesWithPixels ? pixels : 1.0);
+    for (const PassTime& pass : row.passes) {
+        all += pass.time.median;
+        there += pass.time.median * (pass.perPixel ? pixels : 1.0);
     }
     return all > 0.0 ? row.cost * there / all : row.cost * pixels;
 }

@@ -88,7 +88,6 @@ std::vector<std::string> trim(Settings& settings, const Scene& scene, const Came
 std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& scene, const Camera& camera, const IVec2& size)
 {
     std::vector<TunePoint> points;
-    std::map<std::string, std::vector<int>> layersKept;  // by all that they depend on
     for (NamedSettings& named : operatingPoints()) {
         for (const std::string& assignment : options.assignments) applySetting(named.settings, assignment);
         validate(named.settings);
@@ -100,14 +99,9 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
         const auto same = [&](const TunePoint& point) { return point.named.settings == named.settings; };
         if (std::any_of(points.begin(), points.end(), same)) continue;
 
-        Settings maps;
-        maps.rsm = named.settings.rsm;
-        maps.layers = named.settings.layers;
         const Requirements needs = analyseRequirements(scene, named.settings.force);
-        auto& kept = layersKept[settingsToJson(maps).dump()];
-        if (kept.empty() && !scene.lights.empty()) kept = countLayersKept(scene, needs, named.settings);
-        TunePoint point{named, double(frameBytes(named.settings, needs, kept, size.x, size.y)) * 1e-6, {}, {}, {}, trimmed};
-        points.push_back(std::move(point));
+        const std::size_t bytes = frameBytes(predictMemory({scene, needs, named.settings, size.x, size.y}), size.x, size.y);
+        points.push_back({named, double(bytes) * 1e-6, {}, {}, {}, trimmed});
     }
     return points;
 }

@@ -2,8 +2,10 @@
 
 #include "apps/validate/hit_radiance.h"
 #include "apps/validate/voxel_ray.h"
-#include "conetrace/lrsm/gather_setup.h"
+#include "conetrace/frame/cones.h"
+#include "conetrace/lrsm/gather.h"
 #include "core/base/parallel.h"
+#include "reference/embree_scene.h"
 #include "reference/integrator.h"
 
 namespace lrsm {
@@ -42,6 +44,11 @@ struct SplitWorld {
     std::vector<LightSampler> lights;
     std::vector<GatherDirection> directions;
     NormalCdf phi;
+};
+
+struct PixelLight {
+    Vec3 irradiance{0.0f};
+    float opacity = 0.0f;
 };
 
 struct Arriving {
@@ -88,12 +95,12 @@ Arriving alongVoxelRay(const SplitWorld& world, Tracer& tracer, const Surface& s
     return {exactRadiance(tracer, {origin, direction, tNear, tFar, RayKind::bounce}, surfaceInReach), true};
 }
 
-PixelGather gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& surface)
+PixelLight gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& surface)
 {
-    const Mat3 frame = frameFromNormal(surface.normal);
-    PixelGather sum;
+    const Mat3 basis = frameFromNormal(surface.normal);
+    PixelLight sum;
     for (const GatherDirection& sample : world.directions) {
-        const Vec3 direction = frame * sample.local;
+        const Vec3 direction = basis * sample.local;
         Arriving arriving{Vec3(0.0f), true};  // below the horizon: the surface itself is in the way
         if (glm::dot(surface.geometricNormal, direction) > 0.0f)
             arriving = world.split.visibility == Visibility::exact ? alongExactRay(world, tracer, surface, direction)
@@ -104,15 +111,11 @@ PixelGather gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& 
     return sum;
 }
 
-}  // namespace
-
-void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const EmbreeScene& embree, const ConeSettings& cones,
-                 const SplitSettings& split, Gathered& gathered)
+Gathered gatherRays(const GBuffer& gbuffer, const SplitWorld& world)
 {
-    if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return;
-    SplitWorld world{opacity, lrsms, embree, cones, split, {}, gatherDirections(split.strata), NormalCdf(cones.gaussian, cones.gaussianTableSize)};
-    for (const Light& light : embree.scene().lights) world.lights.emplace_back(light);
-
+    Gathered gathered;
+    gathered.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
+    gathered.opacity = Image<float>(gbuffer.width, gbuffer.height);
     parallelFor(std::size_t(gbuffer.height), 1, [&](std::size_t begin, std::size_t end) {
         Tracer tracer(world.embree, world.lights);
         for (std::size_t pixel = begin * std::size_t(gbuffer.width); pixel < end * std::size_t(gbuffer.width); ++pixel) {
@@ -121,11 +124,45 @@ void gatherSplit(const GBuffer& gbuffer, const OpacityPyramid& opacity, const st
             surface.position = gbuffer.position.texels[pixel];
             surface.geometricNormal = gbuffer.geometricNormal.texels[pixel];
             surface.normal = gbuffer.normal.texels[pixel];
-            const PixelGather gathering = gatherPixel(world, tracer, surface);
-            gathered.irradiance.texels[pixel] = gathering.irradiance;
-            gathered.opacity.texels[pixel] = gathering.opacity;
+            const PixelLight light = gatherPixel(world, tracer, surface);
+            gathered.irradiance.texels[pixel] = light.irradiance;
+            gathered.opacity.texels[pixel] = light.opacity;
         }
     });
+    return gathered;
+}
+
+Gathered gatherByRays(const GatherInput& input, const SplitSettings& split, PassLog& log)
+{
+    const ConeSettings& cones = input.settings.cones;
+    const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
+    Gathered byCones = log.run("cones", kPicturePass, [&] { return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, cones); });
+    Gathered byRays = log.run("rays", kPicturePass, [&] {
+        const EmbreeScene embree(input.scene);
+        SplitWorld world{.opacity = input.opacity,
+                         .lrsms = lrsms,
+                         .embree = embree,
+                         .cones = cones,
+                         .split = split,
+                         .lights = {},
+                         .directions = gatherDirections(split.strata),
+                         .phi = NormalCdf(cones.gaussian, cones.gaussianTableSize)};
+        for (const Light& light : input.scene.lights) world.lights.emplace_back(light);
+        return gatherRays(input.gbuffer, world);
+    });
+    byRays.specular = std::move(byCones.specular);
+    return byRays;
+}
+
+}  // namespace
+
+GatherMethod raysMethod(const SplitSettings& split)
+{
+    if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return {};
+    return {.reads = {.bits = true, .mips = true},
+            .gather = [split](const GatherInput& input, PassLog& log) { return gatherByRays(input, split, log); },
+            .explain = {},
+            .predict = {}};
 }
 
 }  // namespace lrsm

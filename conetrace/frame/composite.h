@@ -1,6 +1,6 @@
 #pragma once
 
-#include "conetrace/lrsm/gather.h"
+#include "conetrace/frame/gbuffer.h"
 
 namespace lrsm {
 

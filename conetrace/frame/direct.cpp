@@ -4,7 +4,6 @@
 #include "core/base/parallel.h"
 #include "core/scene/brdf.h"
 #include "core/scene/light.h"
-#include "core/settings/settings_table.h"
 
 #include <cassert>
 
@@ -123,7 +122,6 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
 {
     assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
-    validate(settings);
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
     const Shadowing shadowing{rsms, opacity, settings, static_cast<float>(tangent(halfAperture))};
 

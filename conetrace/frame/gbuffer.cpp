@@ -57,12 +57,6 @@ void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& c
 
 }  // namespace
 
-std::size_t GBuffer::byteSize() const
-{
-    return position.byteSize() + geometricNormal.byteSize() + normal.byteSize() + albedo.byteSize() + specularColor.byteSize() + roughness.byteSize() +
-           depthLinear.byteSize() + objectId.byteSize();
-}
-
 std::size_t GBuffer::predictBytes(int width, int height, bool specular)
 {
     constexpr std::size_t kAlways = 4 * sizeof(Vec3) + sizeof(float) + sizeof(std::uint32_t);

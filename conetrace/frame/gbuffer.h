@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/image.h"
+#include "core/base/arrays.h"
 #include "core/raster/rasterize.h"
 #include "core/scene/camera.h"
 #include "core/scene/requirements.h"
@@ -22,9 +22,28 @@ struct GBuffer {
     RasterCounts raster;
 
     bool covered(std::size_t pixel) const { return objectId.texels[pixel] != 0; }
-    std::size_t byteSize() const;
     static std::size_t predictBytes(int width, int height, bool specular);
 };
+
+/// On a GPU as here: positions need their 32 bits.
+template <class Visit>
+void forEachArray(const GBuffer& gbuffer, Visit&& visit)
+{
+    const auto visitImage = [&](const auto& image) { visit(image.texels, ArrayTraits{image.byteSize()}); };
+    visitImage(gbuffer.position);
+    visitImage(gbuffer.geometricNormal);
+    visitImage(gbuffer.normal);
+    visitImage(gbuffer.albedo);
+    visitImage(gbuffer.specularColor);
+    visitImage(gbuffer.roughness);
+    visitImage(gbuffer.depthLinear);
+    visitImage(gbuffer.objectId);
+}
+
+inline Counters countersOf(const GBuffer& gbuffer)
+{
+    return countersOf(gbuffer.raster);
+}
 
 struct GBufferSettings {
     int width = 1280, height = 720;

@@ -1,5 +1,7 @@
+#include "conetrace/lrsm/explain.h"
+
 #include "conetrace/lrsm/gather.h"
-#include "conetrace/lrsm/gather_setup.h"
+#include "conetrace/lrsm/gather_pixel.h"
 
 #include <cstdio>
 #include <string>
@@ -88,14 +90,17 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
 
 }  // namespace
 
-std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                         const ConeSettings& settings, int x, int y)
+std::string explainLrsm(const GatherInput& input, int x, int y)
 {
-    if (!gbuffer.covered(gbuffer.position.index(x, y))) return format("pixel %d,%d: nothing is drawn here\n", x, y);
-    const GatherPlan plan = planGather(opacity, needs, settings);
-    const ConeWorld world{opacity, lrsms, settings, plan.phi};
-    return settings.estimator == Estimator::slab ? explainWith<Estimator::slab>(gbuffer, camera, world, plan, x, y)
-                                                 : explainWith<Estimator::paper>(gbuffer, camera, world, plan, x, y);
+    if (!input.gbuffer.covered(input.gbuffer.position.index(x, y))) return format("pixel %d,%d: nothing is drawn here\n", x, y);
+    const ConeSettings& settings = input.settings.cones;
+    std::vector<Lrsm> lrsms;
+    for (const Rsm& rsm : input.rsms) lrsms.push_back(buildLrsm(rsm, input.settings.layers));
+    const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.frame.resolution);
+    const NormalCdf phi(settings.gaussian, settings.gaussianTableSize);
+    const ConeWorld world{input.opacity, lrsms, settings, phi};
+    return settings.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
+                                                 : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
 }
 
 }  // namespace lrsm

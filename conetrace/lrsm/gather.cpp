@@ -1,15 +1,15 @@
 #include "conetrace/lrsm/gather.h"
 
-#include "conetrace/lrsm/gather_setup.h"
+#include "conetrace/lrsm/explain.h"
+#include "conetrace/lrsm/gather_pixel.h"
+#include "conetrace/lrsm/memory.h"
 #include "core/base/parallel.h"
-#include "core/settings/settings_table.h"
 #include "voxel/sample_opacity.h"
 
 namespace lrsm {
 namespace {
 
 constexpr int kTile = 16;
-constexpr int kRoughnessClasses = 64;
 
 /// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
 struct ResultRecorder : NoRecorder {
@@ -27,6 +27,7 @@ struct ResultRecorder : NoRecorder {
 struct GatherOutput {
     Gathered& gathered;
     ConeRecord* record;  ///< may be null
+    ConeCounts& counts;
     ResultRecorder diffuseAt(std::size_t pixel) const
     {
         ResultRecorder recorder;
@@ -78,7 +79,7 @@ void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& wo
         for (std::size_t tile = begin; tile < end; ++tile)
             gatherTile<estimator>(gbuffer, camera, world, sampler, plan, static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, out, counts[tile]);
     });
-    for (const ConeCounts& tile : counts) out.gathered.counts += tile;
+    for (const ConeCounts& tile : counts) out.counts += tile;
 }
 
 /// Picks the lookup: specialised for what presets use, generic otherwise; the bits are the same.
@@ -99,37 +100,11 @@ void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 
 }  // namespace
 
-GatherPlan planGather(const OpacityPyramid& opacity, const Requirements& needs, const ConeSettings& settings)
+std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& settings, PassLog& log)
 {
-    validate(settings);
-    GatherPlan plan;
-    plan.cones = makeConeSet(settings);
-    plan.phi = NormalCdf(settings.gaussian, settings.gaussianTableSize);
-    const float reach = 1.7320508f * static_cast<float>(opacity.base.frame.resolution);
-    for (const ConeRing& ring : plan.cones.rings) plan.ringSchedules.push_back(makeSchedule(settings, ring.tanHalf, reach));
-    if (needs.specular) {
-        const int classes = settings.specularAperture == SpecularAperture::fixed ? 1 : kRoughnessClasses;
-        for (int i = 0; i < classes; ++i) {
-            const float roughness = classes > 1 ? static_cast<float>(i) / static_cast<float>(classes - 1) : 0.0f;
-            plan.specularSchedules.push_back(makeSchedule(settings, specularTanHalf(settings, roughness), reach));
-        }
-    }
-    for (const auto* schedules : {&plan.ringSchedules, &plan.specularSchedules})
-        for (const MarchSchedule& schedule : *schedules) plan.longestSchedule = std::max(plan.longestSchedule, schedule.steps.size());
-    return plan;
-}
-
-Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& frame, const ConeSettings& settings, int x, int y)
-{
-    const std::size_t pixel = gbuffer.position.index(x, y);
-    Receiver receiver;
-    receiver.position = gbuffer.position.texels[pixel];
-    receiver.geometricNormal = gbuffer.geometricNormal.texels[pixel];
-    receiver.normal = gbuffer.normal.texels[pixel];
-    receiver.originWorld = receiver.position + receiver.geometricNormal * (settings.normalOffsetVoxels * frame.voxelSize);
-    receiver.originVoxels = frame.voxelsFromWorld(receiver.originWorld);
-    receiver.rotation = rotationOfPixel(x, y, settings.rotation);
-    return receiver;
+    std::vector<Lrsm> lrsms;
+    for (const Rsm& rsm : rsms) lrsms.push_back(log.run("lrsm " + std::to_string(lrsms.size()), kWorldPass, [&] { return buildLrsm(rsm, settings); }));
+    return lrsms;
 }
 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
@@ -146,13 +121,33 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
         record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
     }
 
-    const GatherPlan plan = planGather(opacity, needs, settings);
-    const ConeWorld world{opacity, lrsms, settings, plan.phi};
+    const GatherPlan plan = planGather(settings, needs, opacity.base.frame.resolution);
+    const NormalCdf phi(settings.gaussian, settings.gaussianTableSize);
+    const ConeWorld world{opacity, lrsms, settings, phi};
+    ConeCounts counts;
     if (settings.estimator == Estimator::slab)
-        gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record});
+        gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record, counts});
     else
-        gatherWith<Estimator::paper>(gbuffer, camera, world, plan, {out, record});
+        gatherWith<Estimator::paper>(gbuffer, camera, world, plan, {out, record, counts});
+    out.counters = countersOf(counts);
     return out;
+}
+
+Gathered gatherLrsm(const GatherInput& input, PassLog& log)
+{
+    const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
+    ConeRecord record;
+    Gathered gathered = log.run("cones", kPicturePass, [&] {
+        return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr);
+    });
+    log.show("cones", record);
+    gathered.filter4x4 = input.settings.cones.filter;
+    return gathered;
+}
+
+GatherMethod lrsmMethod()
+{
+    return {.reads = {.bits = true, .mips = true}, .gather = gatherLrsm, .explain = explainLrsm, .predict = predictLrsms};
 }
 
 }  // namespace lrsm

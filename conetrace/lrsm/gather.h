@@ -1,20 +1,13 @@
 #pragma once
 
-#include "conetrace/frame/gbuffer.h"
-#include "conetrace/lrsm/march.h"
-#include "core/scene/requirements.h"
+#include "conetrace/frame/gather.h"
+#include "lrsm/layers.h"
 
+/// method = lrsm: cones through binary voxels that take their light from layered reflective shadow maps (Sec. 4).
 namespace lrsm {
 
-/// Final gathering (Sec. 3.2): what the cones of every pixel bring in.
-struct Gathered {
-    Image<Vec3> irradiance;  ///< pi * sum of weight * I over the diffuse cones, W/m^2
-    Image<Vec3> specular;    ///< I of the specular cone, W/(m^2 sr); empty when the scene has no specular part
-    Image<float> opacity;    ///< weighted mean opacity of the diffuse cones
-    ConeCounts counts;
-
-    std::size_t byteSize() const { return irradiance.byteSize() + specular.byteSize() + opacity.byteSize(); }
-};
+/// The pre-filtered layers of every light's map; passes "lrsm 0", "lrsm 1", ...
+std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& settings, PassLog& log);
 
 /// What each cone brought in, for captures. 0 where nothing was drawn.
 struct ConeRecord {
@@ -23,13 +16,16 @@ struct ConeRecord {
     Image<Vec4> specular;       ///< the same of the specular cone; empty when the scene has no specular part
 };
 
-/// Traces the cones of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
-/// `opacity` and `lrsms` are the world; `eye` decides the mirror direction. `record`, when given, is filled besides.
+/// Final gathering (Sec. 3.2) of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
+/// Irradiance is pi * sum of weight * I over the diffuse cones, opacity their weighted mean, specular the I of the specular cone.
+/// `opacity` and `lrsms` are the world; the camera decides the mirror direction. `record`, when given, is filled besides.
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record = nullptr);
 
-/// Text of how one pixel's cones went, step by step: what `--pixel` prints.
-std::string explainCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                         const ConeSettings& settings, int x, int y);
+/// The passes "lrsm 0", ..., "cones". Whoever watches the log is shown the ConeRecord too.
+Gathered gatherLrsm(const GatherInput& input, PassLog& log);
+
+/// The line of the frame's switch.
+GatherMethod lrsmMethod();
 
 }  // namespace lrsm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conetrace/frame/schedule.h"
+#include "core/base/counters.h"
 #include "core/settings/settings.h"
 #include "lrsm/footprint.h"
 #include "lrsm/sample.h"
@@ -10,7 +11,7 @@
 
 /// One cone through the voxels and the LRSMs: the seam behind which the estimators stand. Each estimator is one function template with the same
 /// signature, ConeResult march...(const ConeWorld&, const Sampler&, const ConeRay&, const MarchSchedule&, MarchScratch&, ConeCounts&, Recorder&);
-/// marchCone in gather_setup.h picks one. The sampler is the opacity pyramid's lookup: specialised in a frame, generic for --pixel.
+/// marchCone in gather_pixel.h picks one. The sampler is the opacity pyramid's lookup: specialised in a frame, generic for --pixel.
 namespace lrsm {
 
 /// Everything that a cone reads.
@@ -55,6 +56,14 @@ struct ConeCounts {
         return *this;
     }
 };
+
+inline Counters countersOf(const ConeCounts& counts)
+{
+    return {{"cones", static_cast<double>(counts.cones)},
+            {"cone_steps", static_cast<double>(counts.steps)},
+            {"voxel_taps", static_cast<double>(counts.voxelTaps)},
+            {"lrsm_samples", static_cast<double>(counts.lrsmSamples)}};
+}
 
 /// Working memory of one thread's cones, sized once for the longest schedule.
 struct MarchScratch {

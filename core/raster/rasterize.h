@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/counters.h"
 #include "core/base/image.h"
 #include "core/base/math.h"
 
@@ -45,6 +46,15 @@ struct RasterCounts {
     std::uint64_t culled = 0;     ///< back faces and zero area after snapping
     std::uint64_t dropped = 0;    ///< NaN or infinite positions
 };
+
+inline Counters countersOf(const RasterCounts& counts)
+{
+    return {{"triangles_submitted", static_cast<double>(counts.submitted)},
+            {"triangles_drawn", static_cast<double>(counts.drawn)},
+            {"triangles_clipped", static_cast<double>(counts.clipped)},
+            {"triangles_culled", static_cast<double>(counts.culled)},
+            {"triangles_dropped", static_cast<double>(counts.dropped)}};
+}
 
 struct RasterOutput {
     Image<Fragment> fragments;

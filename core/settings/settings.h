@@ -110,12 +110,15 @@ struct ConeSettings {
     bool operator==(const ConeSettings&) const = default;
 };
 
+enum class Method { lrsm };  ///< of indirect light
+
 struct ForceSettings {
     bool everything = false;  ///< run every pass and branch that the scene analysis would leave out (tests that the analysis is safe)
     bool operator==(const ForceSettings&) const = default;
 };
 
 struct Settings {
+    Method method = Method::lrsm;
     VoxelSettings voxel;
     RsmSettings rsm;
     LayerSettings layers;

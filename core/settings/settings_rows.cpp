@@ -99,6 +99,20 @@ using C = ConeSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
+SettingRow methodRow()
+{
+    return {.key = "method",
+            .stage = "method",
+            .unit = "",
+            .meaning = "of indirect light: layered reflective shadow maps",
+            .source = "paper: lrsm",
+            .kind = SettingKind::choice,
+            .range = {0, 0},
+            .choices = {"lrsm"},
+            .get = [](const Settings& settings) { return static_cast<double>(settings.method); },
+            .set = [](Settings& settings, double value) { settings.method = static_cast<Method>(value); }};
+}
+
 void addBuildingRows(std::vector<SettingRow>& rows)
 {
     const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"};
@@ -211,7 +225,7 @@ void addShorthands(std::vector<SettingRow>& rows)
 std::span<const SettingRow> settingRows()
 {
     static const std::vector<SettingRow> table = [] {
-        std::vector<SettingRow> rows;
+        std::vector<SettingRow> rows = {methodRow()};
         addBuildingRows(rows);
         addConeRows(rows);
         addLookupRows(rows);

@@ -143,39 +143,17 @@ void applySetting(Settings& settings, const std::string& assignment)
 
 namespace {
 
-/// `stage` empty: all of them.
-void checkRanges(const Settings& settings, std::string_view stage)
+void checkRanges(const Settings& settings)
 {
     for (const SettingRow& row : settingRows())
-        if (!row.shorthand && (stage.empty() || row.stage == stage) && !inRange(row, row.get(settings))) refuse(row, valueText(row, settings));
+        if (!row.shorthand && !inRange(row, row.get(settings))) refuse(row, valueText(row, settings));
 }
 
 }  // namespace
 
-void validate(const VoxelSettings& settings)
-{
-    checkRanges({.voxel = settings, .rsm = {}, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "voxel");
-}
-void validate(const RsmSettings& settings)
-{
-    checkRanges({.voxel = {}, .rsm = settings, .layers = {}, .direct = {}, .cones = {}, .force = {}}, "rsm");
-}
-void validate(const LayerSettings& settings)
-{
-    checkRanges({.voxel = {}, .rsm = {}, .layers = settings, .direct = {}, .cones = {}, .force = {}}, "layers");
-}
-void validate(const DirectSettings& settings)
-{
-    checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = settings, .cones = {}, .force = {}}, "direct");
-}
-void validate(const ConeSettings& settings)
-{
-    checkRanges({.voxel = {}, .rsm = {}, .layers = {}, .direct = {}, .cones = settings, .force = {}}, "cones");
-}
-
 void validate(const Settings& settings)
 {
-    checkRanges(settings, "");
+    checkRanges(settings);
 
     const LayerSettings& layers = settings.layers;
     const ConeSettings& cones = settings.cones;

@@ -40,13 +40,6 @@ void applySettingsFile(Settings& settings, const std::string& path);
 /// Throws InputError on any field out of range (NaN included) and on combinations that have no meaning: the message says which.
 void validate(const Settings& settings);
 
-/// The same for one stage's fields: what each pass asks of the settings that it is given.
-void validate(const VoxelSettings& settings);
-void validate(const RsmSettings& settings);
-void validate(const LayerSettings& settings);
-void validate(const DirectSettings& settings);
-void validate(const ConeSettings& settings);
-
 struct SettingDifference {
     std::string key, a, b;
 };

@@ -64,13 +64,13 @@ benchmark::Counter perSecond(double count)
 void cones(benchmark::State& state)
 {
     const Inputs in(static_cast<int>(state.range(0)), settingsOf(Estimator(state.range(1))));
-    ConeCounts counts;
-    for (auto _ : state) counts = in.gather().counts;
-    state.SetItemsProcessed(state.iterations() * std::int64_t(counts.steps));
-    state.counters["cones/s"] = perSecond(double(counts.cones));
-    state.counters["voxel taps/s"] = perSecond(double(counts.voxelTaps));
-    state.counters["layer samples/s"] = perSecond(double(counts.lrsmSamples));
-    state.counters["steps a cone"] = double(counts.steps) / double(counts.cones);
+    Counters counts;
+    for (auto _ : state) counts = in.gather().counters;
+    state.SetItemsProcessed(state.iterations() * std::int64_t(counterSum(counts, "cone_steps")));
+    state.counters["cones/s"] = perSecond(counterSum(counts, "cones"));
+    state.counters["voxel taps/s"] = perSecond(counterSum(counts, "voxel_taps"));
+    state.counters["layer samples/s"] = perSecond(counterSum(counts, "lrsm_samples"));
+    state.counters["steps a cone"] = counterSum(counts, "cone_steps") / counterSum(counts, "cones");
     state.SetLabel(std::string(kScenes[state.range(0)]) + (state.range(1) ? ", slab (balanced)" : ", paper (literal)"));
 }
 BENCHMARK(cones)->ArgNames({"scene", "slab"})->ArgsProduct({{0, 1, 2}, {1, 0}})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
@@ -120,11 +120,11 @@ void wholeFrame(benchmark::State& state)
     RenderOptions options;
     options.width = kWidth;
     options.height = kHeight;
-    options.hashPasses = false;
+    options.watch.hashPasses = false;
     std::map<std::string, double> milliseconds;
     double total = 0.0;
     for (auto _ : state)
-        for (const PassReport& pass : renderFrame(scene, scene.cameras.at(0), needs, settings, options).passes) {
+        for (const PassReport& pass : renderFrame(scene, scene.cameras.at(0), settings, options).passes) {
             milliseconds[pass.name] += pass.milliseconds;
             total += pass.milliseconds;
         }

@@ -38,7 +38,7 @@ void splitAndFilter(benchmark::State& state)
     for (auto _ : state) {
         const Lrsm lrsm = buildLrsm(rsm, settings);
         benchmark::DoNotOptimize(lrsm.texels.data());
-        bytes = lrsm.byteSize();
+        bytes = bytesOf(lrsm);
         layers = lrsm.layers();
     }
     state.SetItemsProcessed(state.iterations() * std::int64_t(rsm.texels.texels.size()));

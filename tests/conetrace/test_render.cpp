@@ -1,4 +1,5 @@
 #include "conetrace/render.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/light.h"
@@ -31,7 +32,7 @@ Frame renderSmall(const Scene& scene, const Settings& settings, int width = 48, 
     RenderOptions options;
     options.width = width;
     options.height = height;
-    return renderFrame(scene, scene.cameras.at(0), analyseRequirements(scene, settings.force), settings, options);
+    return renderFrame(scene, scene.cameras.at(0), settings, options);
 }
 
 double mean(const Image<Vec3>& image)
@@ -134,7 +135,7 @@ TEST_CASE("frame: a scene scaled by 2^k gives the same irradiance to the bit", "
     const auto scene = makeBuiltinScene(GENERATE("cornell-box", "atrium"));
     const Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
     const Frame before = renderSmall(*scene, settings), after = renderSmall(scaledScene(*scene, 16.0f), settings);
-    CHECK(before.voxelsSet == after.voxelsSet);
+    CHECK(counterSum(before.passes, "voxels_set") == counterSum(after.passes, "voxels_set"));
     CHECK(before.irradiance.texels == after.irradiance.texels);
     CHECK(before.direct.texels == after.direct.texels);
     CHECK(before.opacity.texels == after.opacity.texels);
@@ -195,6 +196,48 @@ TEST_CASE("frame: moving the voxel grid, or doubling voxels or RSM, changes the 
     CHECK(mean(renderSmall(shifted, settings).irradiance) == Approx(base).epsilon(0.04));
 }
 
+TEST_CASE("an invented method: only what it reads is built, and its pass reports itself like any other", "[conetrace][seam]")
+{
+    // Light that is nowhere but in this test: the albedo, from a pass of its own over an invented grid of 4x3 cells.
+    const auto scene = makeBuiltinScene("cornell-glossy");
+    const Settings settings = smallSettings();
+    RenderOptions options{.width = 8, .height = 6, .watch = {}, .method = {}};
+    std::vector<std::string> seen;
+    options.watch.observe = [&](const std::string& pass, const PassOutput& output) {
+        seen.push_back(pass);
+        if (pass == "invented grid") CHECK(output.as<Image<float>>()->texels.size() == 12);
+    };
+    options.method.reads = {.bits = GENERATE(false, true), .mips = false};
+    options.method.gather = [](const GatherInput& input, PassLog& log) {
+        CHECK(input.opacity.levels() == 0);
+        log.run("invented grid", kWorldPass, [] { return Image<float>(4, 3, 1.0f); });
+        return log.run("invented gather", kPicturePass, [&] {
+            Gathered gathered;
+            gathered.irradiance = input.gbuffer.albedo;
+            gathered.specular = Image<Vec3>(8, 6, Vec3(1.0f));
+            gathered.opacity = Image<float>(8, 6);
+            gathered.counters = {{"invented_taps", 48.0}};
+            return gathered;
+        });
+    };
+    const Frame frame = renderFrame(*scene, scene->cameras.at(0), settings, options);
+    std::vector<std::string> passes;
+    for (const PassReport& pass : frame.passes) passes.push_back(pass.name);
+    std::vector<std::string> expected = {"rsm 0", "gbuffer", "direct", "invented grid", "invented gather", "composite"};
+    if (options.method.reads.bits) expected.insert(expected.begin(), "voxelize");
+    CHECK(passes == expected);
+    CHECK(seen == expected);
+    CHECK(counterSum(frame.passes, "invented_taps") == 48.0);
+    CHECK(frame.irradiance.texels == frame.gbuffer.albedo.texels);
+    for (const PassReport& pass : frame.passes) {
+        if (pass.name != "invented grid") continue;
+        CHECK(pass.bytes == 12 * sizeof(float));
+        CHECK(pass.sha256 == hashOf(Image<float>(4, 3, 1.0f)));
+        CHECK(pass.traits.resident);
+    }
+    CHECK_THROWS_AS(explainPixel(*scene, scene->cameras.at(0), settings, options, 1, 1), InputError);
+}
+
 TEST_CASE("frame: several lights add up", "[conetrace]")
 {
     auto scene = makeBuiltinScene("cornell-box");
@@ -226,9 +269,8 @@ TEST_CASE("pixel: the explanation names every cone and ends with the pixel's own
     RenderOptions options;
     options.width = 48;
     options.height = 36;
-    const Requirements needs = analyseRequirements(*scene, settings.force);
-    const Frame frame = renderFrame(*scene, scene->cameras[0], needs, settings, options);
-    const std::string text = explainPixel(*scene, scene->cameras[0], needs, settings, options, 20, 30);
+    const Frame frame = renderFrame(*scene, scene->cameras[0], settings, options);
+    const std::string text = explainPixel(*scene, scene->cameras[0], settings, options, 20, 30);
     for (int cone = 0; cone < 6; ++cone) CHECK(text.find("cone " + std::to_string(cone)) != std::string::npos);
     char expected[128];
     const Vec3 e = frame.irradiance.at(20, 30);

@@ -25,7 +25,7 @@ bool sameBits(const Lrsm& a, const Lrsm& b)
 {
     return a.ranges == b.ranges && a.texels.size() == b.texels.size() && a.validTexelsPerLayer == b.validTexelsPerLayer &&
            a.negativeVariances == b.negativeVariances && a.conversions.halfSaturations == b.conversions.halfSaturations &&
-           std::memcmp(a.texels.data(), b.texels.data(), a.byteSize()) == 0;
+           std::memcmp(a.texels.data(), b.texels.data(), bytesOf(a)) == 0;
 }
 
 /// The eleven numbers of a texel, in double.
@@ -174,8 +174,8 @@ TEST_CASE("predicted bytes are the bytes that layers hold", "[lrsm][memory]")
 {
     const int resolution = GENERATE(2, 4, 64, 256);
     const Lrsm lrsm = buildLrsm(randomRsm(resolution, 16, 1.0f), layerSettings(2, 2, Storage::gpu));
-    CHECK(lrsm.byteSize() == predictLayerBytes(resolution) * std::size_t(lrsm.layers()));
-    CHECK(lrsm.gpuBytes() * 2 == lrsm.byteSize());
+    CHECK(bytesOf(lrsm) == predictLayerBytes(resolution) * std::size_t(lrsm.layers()));
+    CHECK(gpuBytesOf(lrsm) * 2 == bytesOf(lrsm));
     CHECK(predictLayerBytes(1024) == std::size_t(48) * 349525);  // Table 2's 512^2: (4^10 - 1) / 3 texels
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrs
         if (kept.validTexelsPerLayer[std::size_t(layer)] == 0)
             for (std::size_t i = 0; i < kept.texelsPerLayer; ++i) REQUIRE(std::memcmp(kept.level(layer, 0) + i, &empty, sizeof empty) == 0);
         else
-            CHECK(std::memcmp(kept.level(layer, 0), dropped.level(0, 0), dropped.byteSize()) == 0);
+            CHECK(std::memcmp(kept.level(layer, 0), dropped.level(0, 0), bytesOf(dropped)) == 0);
     }
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("a layer of texels that send no light is dropped; one lit texel keeps 
     const Lrsm lit = buildLrsm(rsm, settings);
     REQUIRE(lit.layers() == 2);
     CHECK(lit.validTexelsPerLayer.back() == 16);
-    CHECK(std::memcmp(lit.level(0, 0), dark.level(0, 0), dark.byteSize()) == 0);
+    CHECK(std::memcmp(lit.level(0, 0), dark.level(0, 0), bytesOf(dark)) == 0);
 }
 
 TEST_CASE("degenerate maps: nothing drawn, one texel, one depth, the smallest size", "[lrsm]")
@@ -231,7 +231,7 @@ TEST_CASE("degenerate maps: nothing drawn, one texel, one depth, the smallest si
         CHECK(lrsm.layers() == 0);
         CHECK(lrsm.layersAsked == 6);
         CHECK(lrsm.levels() == 4);
-        CHECK(lrsm.byteSize() == 0);
+        CHECK(bytesOf(lrsm) == 0);
     }
     SECTION("one texel")
     {
@@ -352,6 +352,6 @@ TEST_CASE("depths scaled by 2^-k, or moved by one, keep every stored bit", "[lrs
         CHECK(byScale.ranges[std::size_t(i)].depthMin == 0.125f * lrsm.ranges[std::size_t(i)].depthMin);
         CHECK(byOffset.ranges[std::size_t(i)].depthMax == 0.5f + lrsm.ranges[std::size_t(i)].depthMax);
     }
-    CHECK(std::memcmp(byScale.texels.data(), lrsm.texels.data(), lrsm.byteSize()) == 0);
-    CHECK(std::memcmp(byOffset.texels.data(), lrsm.texels.data(), lrsm.byteSize()) == 0);
+    CHECK(std::memcmp(byScale.texels.data(), lrsm.texels.data(), bytesOf(lrsm)) == 0);
+    CHECK(std::memcmp(byOffset.texels.data(), lrsm.texels.data(), bytesOf(lrsm)) == 0);
 }

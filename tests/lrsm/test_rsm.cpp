@@ -202,7 +202,7 @@ TEST_CASE("RSM: predicted bytes are the measured ones; any number of threads giv
         const ThreadLimit limit(threads);
         maps.push_back(renderRsm(roomScene(), light, kEverything, settingsOf(256, Storage::gpu)));
     }
-    CHECK(maps[0].byteSize() == Rsm::predictBytes(256));
+    CHECK(bytesOf(maps[0]) == Rsm::predictBytes(256));
     for (const Rsm& map : maps) {
         CHECK(std::memcmp(map.texels.texels.data(), maps[0].texels.texels.data(), map.texels.byteSize()) == 0);
         CHECK(map.depthLinear.texels == maps[0].depthLinear.texels);

@@ -137,7 +137,7 @@ TEST_CASE("predicted bytes are the bytes held", "[voxel][pyramid][memory]")
             settings.resolution = n;
             settings.axes = axes;
             settings.storage = storage;
-            CHECK(buildPyramid(randomGrid(n, 0.1, 1), settings).byteSize() == predictPyramidBytes(settings));
+            CHECK(bytesOf(buildPyramid(randomGrid(n, 0.1, 1), settings)) == predictPyramidBytes(settings));
         }
     }
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "apps/validate/extremes/extremes.h"
-#include "conetrace/pass_log.h"
+#include "conetrace/lrsm/gather.h"
+#include "conetrace/render.h"
 #include "core/base/hash.h"
 
 #include <initializer_list>

@@ -87,7 +87,7 @@ void Probe::frame(const Frame& frame)
     }
     output("indirect diffuse", frame.indirectDiffuse);
     output("indirect specular", frame.indirectSpecular);
-    for (const Frame::LightReport& light : frame.lights) require(light.conversions.nans == 0, "a NaN was converted");
+    require(counterSum(frame.passes, "nans") == 0.0, "a NaN was converted");
 }
 
 void Probe::refuses(const std::string& what, const std::string& says, const std::function<void()>& run)

@@ -111,7 +111,7 @@ Frame renderWorld(const World& world, const Settings& settings, int width, int h
     RenderOptions options;
     options.width = width;
     options.height = height;
-    return renderFrame(world.scene, world.camera, analyseRequirements(world.scene, settings.force), settings, options);
+    return renderFrame(world.scene, world.camera, settings, options);
 }
 
 double meanOf(const Image<Vec3>& image, const GBuffer& gbuffer)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conetrace/frame/gbuffer.h"
-#include "conetrace/lrsm/gather_setup.h"
+#include "conetrace/lrsm/gather_pixel.h"
 
 #include <cstdint>
 

@@ -53,7 +53,8 @@ class LadderWorld {
           opacity_(buildPyramid(voxelize(scene, settings.voxel), settings.voxel)),
           embree_(scene),
           gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height})),
-          plan_(planGather(opacity_, needs, settings.cones))
+          plan_(planGather(settings.cones, needs, settings.voxel.resolution)),
+          phi_(settings.cones.gaussian, settings.cones.gaussianTableSize)
     {
         for (const Light& light : scene.lights) {
             samplers_.emplace_back(light);
@@ -90,7 +91,7 @@ class LadderWorld {
     Tracer tracer() const { return {embree_, samplers_}; }
 
   private:
-    ConeWorld world() const { return {opacity_, stored_, settings_.cones, plan_.phi}; }
+    ConeWorld world() const { return {opacity_, stored_, settings_.cones, phi_}; }
 
     LadderSample describe(const RecordedSample& recorded) const
     {
@@ -133,7 +134,7 @@ class LadderWorld {
             rung(RadianceRung::eq15) += meanOf(footprint.eq15);
             rung(RadianceRung::mips) += meanOf(filteredRadiance(light.wide, sphere, settings_.cones, 0.0));
             rung(RadianceRung::table1) += meanOf(filteredRadiance(stored, sphere, settings_.cones, double(kVarianceFloor)));
-            shipped += sampleLrsm(stored, sphere, settings_.cones, plan_.phi);
+            shipped += sampleLrsm(stored, sphere, settings_.cones, phi_);
             if (const double brightness = meanOf(footprint.eq3); brightness > brightest) {
                 brightest = brightness;
                 sample.slope = footprint.slope;
@@ -153,6 +154,7 @@ class LadderWorld {
     EmbreeScene embree_;
     GBuffer gbuffer_;
     GatherPlan plan_;
+    NormalCdf phi_;
     std::vector<LightSampler> samplers_;
     std::vector<LadderLight> lights_;
     std::vector<Lrsm> stored_;

@@ -3,7 +3,6 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
-#include "conetrace/pass_log.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
@@ -85,7 +84,7 @@ TEST_CASE("capture: through files and back every pass has the hash that the fram
     RenderOptions options;
     options.width = r.options.width;
     options.height = r.options.height;
-    const Frame frame = renderFrame(r.scene, r.scene.cameras.at(0), r.needs, r.settings, options);
+    const Frame frame = renderFrame(r.scene, r.scene.cameras.at(0), r.settings, options);
     std::map<std::string, std::string> expected;
     for (const PassReport& pass : frame.passes) expected[pass.name] = pass.sha256;
     CHECK(hashesOf(r.capture) == expected);

@@ -59,7 +59,7 @@ Frame adviceFrame(const Scene& scene, const Settings& settings)
     RenderOptions options;
     options.width = 40;
     options.height = 24;
-    return renderFrame(scene, scene.cameras.at(0), analyseRequirements(scene, settings.force), settings, options);
+    return renderFrame(scene, scene.cameras.at(0), settings, options);
 }
 
 }  // namespace

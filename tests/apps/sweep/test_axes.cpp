@@ -91,7 +91,7 @@ TEST_CASE("one at a time visits every setting of the program, around every prese
                 ++visits;
                 for (const SettingDifference& change : differences(base, named.settings)) differing += change.key == info.key;
             }
-            CHECK(visits >= 1);
+            CHECK(visits >= (info.allowed == info.defaultValue ? 0 : 1));  // a choice of one has no other value
             CHECK(visits <= 14);
             CHECK(differing == visits);
         }

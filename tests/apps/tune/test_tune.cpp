@@ -51,7 +51,7 @@ class MadeMachine {
             m.calibrationCpu = 10.0 * slow;
             m.frameCpu = m.cost * m.calibrationCpu;
             m.frame.median = m.frameCpu / 2.0;  // two threads
-            m.passes = {{"voxelize", {m.frame.median / (1.0 + pixels), 0, 0}}, {"cones", {m.frame.median * pixels / (1.0 + pixels), 0, 0}}};
+            m.passes = {{"voxelize", false, {m.frame.median / (1.0 + pixels), 0, 0}}, {"cones", true, {m.frame.median * pixels / (1.0 + pixels), 0, 0}}};
             ++(asked ? verified : probed);
             return m;
         };
@@ -228,7 +228,7 @@ TEST_CASE("cost at another size: what goes with pixels grows, the rest stays", "
     row.width = 320;
     row.height = 180;
     row.cost = 10.0;
-    row.passes = {{"voxelize", {30, 0, 0}}, {"rsm", {10, 0, 0}}, {"cones", {60, 0, 0}}};
+    row.passes = {{"voxelize", false, {30, 0, 0}}, {"rsm", false, {10, 0, 0}}, {"cones", true, {60, 0, 0}}};
     CHECK(costAtSize(row, 320, 180) == Approx(10.0));
     CHECK(costAtSize(row, 640, 360) == Approx(10.0 * (0.4 + 0.6 * 4)));
     CHECK(costAtSize(row, 160, 90) == Approx(10.0 * (0.4 + 0.6 / 4)));

@@ -28,12 +28,9 @@ Frame renderSplit(const Scene& scene, const Settings& settings, const SplitSetti
     RenderOptions options;
     options.width = kWidth;
     options.height = kHeight;
-    options.hashPasses = false;
-    if (split.visibility == Visibility::exact || split.radiance == Radiance::exact)
-        options.replaceDiffuse = [&](const GBuffer& gbuffer, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, Gathered& gathered) {
-            gatherSplit(gbuffer, opacity, lrsms, EmbreeScene(scene), settings.cones, split, gathered);
-        };
-    return renderFrame(scene, scene.cameras.at(0), analyseRequirements(scene, settings.force), settings, options);
+    options.watch.hashPasses = false;
+    options.method = raysMethod(split);
+    return renderFrame(scene, scene.cameras.at(0), settings, options);
 }
 
 ReferenceFrame truth(const Scene& scene, std::uint64_t samples)

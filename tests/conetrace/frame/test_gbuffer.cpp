@@ -126,8 +126,8 @@ TEST_CASE("G-buffer: the specular channels are there only when needed, and chang
     const GBuffer all = renderGBuffer(testScene(), testCameras()[0], need, {64, 36});
     need.specular = false;
     const GBuffer less = renderGBuffer(testScene(), testCameras()[0], need, {64, 36});
-    CHECK(all.byteSize() == GBuffer::predictBytes(64, 36, true));
-    CHECK(less.byteSize() == GBuffer::predictBytes(64, 36, false));
+    CHECK(bytesOf(all) == GBuffer::predictBytes(64, 36, true));
+    CHECK(bytesOf(less) == GBuffer::predictBytes(64, 36, false));
     CHECK(less.specularColor.empty());
     CHECK(less.roughness.empty());
     CHECK(less.position.texels == all.position.texels);

@@ -55,18 +55,20 @@ struct SmallFrame {
     std::vector<Lrsm> lrsms;
     GBuffer gbuffer;
     GatherPlan plan;
+    NormalCdf phi;
 
     explicit SmallFrame(const Settings& s)
         : settings(s),
           opacity(buildPyramid(voxelize(scene, s.voxel), s.voxel)),
           gbuffer(renderGBuffer(scene, scene.cameras[0], needs, {16, 12})),
-          plan(planGather(opacity, needs, settings.cones))
+          plan(planGather(settings.cones, needs, settings.voxel.resolution)),
+          phi(settings.cones.gaussian, settings.cones.gaussianTableSize)
     {
         for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, s.rsm), s.layers));
     }
     SampledFrame draw(std::size_t count, std::uint64_t seed) const
     {
-        return sampleGather(gbuffer, scene.cameras[0], {opacity, lrsms, settings.cones, plan.phi}, plan, count, seed);
+        return sampleGather(gbuffer, scene.cameras[0], {opacity, lrsms, settings.cones, phi}, plan, count, seed);
     }
 };
 
@@ -194,7 +196,7 @@ TEST_CASE("the shipped rung is what --pixel prints for that step, to the digits 
         if (lit >= 6) break;
         if (s.radiance[int(RadianceRung::algorithm1)] == 0.0) continue;
         ++lit;
-        const std::string text = explainPixel(scene, scene.cameras[0], analyseRequirements(scene, {}), settings, options, s.x, s.y);
+        const std::string text = explainPixel(scene, scene.cameras[0], settings, options, s.x, s.y);
         const PrintedStep printed = printedStep(text, s.cone, s.step);
         CAPTURE(s.x, s.y, s.cone, s.step);
         REQUIRE(printed.found);
@@ -221,7 +223,7 @@ TEST_CASE("slab: the shipped segment is what --pixel prints for that step; texel
     for (const LadderSample& s : ladder.samples) {
         if (lit >= 6) break;
         if (s.emission[int(EmissionRung::segment)] < 1e-3) continue;
-        const std::string text = explainPixel(scene, scene.cameras[0], analyseRequirements(scene, {}), settings, options, s.x, s.y);
+        const std::string text = explainPixel(scene, scene.cameras[0], settings, options, s.x, s.y);
         const PrintedStep printed = printedStep(text, s.cone, s.step);
         CAPTURE(s.x, s.y, s.cone, s.step);
         REQUIRE(printed.found);

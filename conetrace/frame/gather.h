@@ -1,0 +1,66 @@
+#pragma once
+
+#include "conetrace/frame/gbuffer.h"
+#include "conetrace/frame/memory.h"
+#include "conetrace/frame/pass_log.h"
+#include "core/settings/settings.h"
+#include "lrsm/rsm.h"
+#include "voxel/opacity_pyramid.h"
+
+#include <functional>
+
+/// The seam between the frame and the methods of indirect light: a method is a plain function from world and G-buffer to gathered light.
+/// docs/adding-a-method.md walks through it.
+namespace lrsm {
+
+/// What every method is given.
+struct GatherInput {
+    const Scene& scene;
+    const Camera& camera;
+    const Requirements& needs;
+    const Settings& settings;
+    const GBuffer& gbuffer;
+    const std::vector<Rsm>& rsms;   ///< one a light, in the scene's order
+    const OpacityPyramid& opacity;  ///< as far as the method reads it (WorldReads): bits alone, or with mips; else empty
+};
+
+/// Indirect light at each pixel's surface; 0 where nothing was drawn.
+struct Gathered {
+    Image<Vec3> irradiance;  ///< W/m^2, before the receiver's albedo
+    Image<Vec3> specular;    ///< mean radiance over the specular lobe, W/(m^2 sr); empty when the scene has no specular part
+    Image<float> opacity;    ///< mean opacity of the hemisphere, 0 open .. 1 closed
+    bool filter4x4 = false;  ///< directions alternate over 4x4 pixels: the frame averages the irradiance over them
+    Counters counters;
+};
+
+/// Irradiance with opacity, and specular: half x4 on a GPU.
+template <class Visit>
+void forEachArray(const Gathered& gathered, Visit&& visit)
+{
+    forEachArray(gathered.irradiance, visit);
+    forEachArray(gathered.specular, visit);
+    visit(gathered.opacity.texels, ArrayTraits{0});
+}
+
+inline const Counters& countersOf(const Gathered& gathered)
+{
+    return gathered.counters;
+}
+
+/// What of the voxels a method reads; the rest is not built. Layers and caches are its own passes.
+struct WorldReads {
+    bool bits = false;  ///< GatherInput::opacity.base
+    bool mips = false;  ///< the levels above; implies the bits
+};
+
+/// One method, as the frame's switch (conetrace/render.cpp) knows it.
+struct GatherMethod {
+    WorldReads reads;
+    std::function<Gathered(const GatherInput&, PassLog&)> gather;
+    /// How one pixel came about, as text; may be empty.
+    std::function<std::string(const GatherInput&, int x, int y)> explain;
+    /// What the method's own passes will hold, in order; may be empty.
+    std::function<std::vector<MemoryRow>(const MemoryQuestion&)> predict;
+};
+
+}  // namespace lrsm

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "conetrace/frame/cones.h"
+#include "conetrace/frame/schedule.h"
+#include "core/scene/requirements.h"
+
+#include <vector>
+
+namespace lrsm {
+
+/// Directions and schedules of one frame's cones.
+struct GatherPlan {
+    ConeSet cones;
+    std::vector<MarchSchedule> ringSchedules;      ///< one a ring
+    std::vector<MarchSchedule> specularSchedules;  ///< by roughness class; one when the aperture is fixed, none without specular cones
+    std::size_t longestSchedule = 0;               ///< steps
+
+    /// The schedule of the specular cone for this roughness (clamped to [0, 1]; NaN counts as 0).
+    const MarchSchedule& specularSchedule(float roughness) const;
+};
+
+/// Cones reach through the whole grid, `gridResolution` voxels along an edge.
+GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, int gridResolution);
+
+}  // namespace lrsm

@@ -1,0 +1,20 @@
+#include "conetrace/frame/receiver.h"
+
+#include "conetrace/frame/cones.h"
+
+namespace lrsm {
+
+Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& grid, const ConeSettings& settings, int x, int y)
+{
+    const std::size_t pixel = gbuffer.position.index(x, y);
+    Receiver receiver;
+    receiver.position = gbuffer.position.texels[pixel];
+    receiver.geometricNormal = gbuffer.geometricNormal.texels[pixel];
+    receiver.normal = gbuffer.normal.texels[pixel];
+    receiver.originWorld = receiver.position + receiver.geometricNormal * (settings.normalOffsetVoxels * grid.voxelSize);
+    receiver.originVoxels = grid.voxelsFromWorld(receiver.originWorld);
+    receiver.rotation = rotationOfPixel(x, y, settings.rotation);
+    return receiver;
+}
+
+}  // namespace lrsm

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "conetrace/frame/gbuffer.h"
+#include "core/settings/settings.h"
+#include "voxel/bit_grid.h"
+
+namespace lrsm {
+
+/// One surface, ready for cones.
+struct Receiver {
+    Vec3 position{0.0f};
+    Vec3 geometricNormal{0.0f}, normal{0.0f};
+    Vec3 originVoxels{0.0f}, originWorld{0.0f};  ///< the cones' apex: off the surface by normalOffsetVoxels
+    int rotation = 0;                            ///< of the cone set, 0 .. kRotations - 1
+};
+Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& grid, const ConeSettings& settings, int x, int y);
+
+}  // namespace lrsm
