@@ -4,7 +4,7 @@
 
 #include <map>
 #include <string>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 /// How far from the truth each layer of each preset may be: limits.json, and what it means.
