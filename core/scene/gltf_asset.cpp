@@ -13,7 +13,8 @@ void noteExtensions(const Document& document, Asset& asset)
 {
     std::string ignored;
     for (const std::string& name : document.model.extensionsUsed)
-        if (name != "KHR_lights_punctual" && name != "KHR_texture_transform" && name != "KHR_mesh_quantization") ignored += (ignored.empty() ? "" : ", ") + name;
+        if (name != "KHR_lights_punctual" && name != "KHR_texture_transform" && name != "KHR_mesh_quantization")
+            ignored += (ignored.empty() ? "" : ", ") + name;
     if (!ignored.empty()) asset.notes.push_back("extensions ignored: " + ignored);
 }
 
