@@ -1,13 +1,12 @@
 // A capture's folder: manifest, .npy and DDS, in and out.
 #include "apps/capture/capture.h"
 #include "apps/capture/manifest.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/base/json_reader.h"
 #include "core/base/output_folder.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 
@@ -63,15 +62,7 @@ Capture readManifest(const std::string& folder)
     const std::string path = pathIn(folder, kManifestFile);
     if (!std::filesystem::is_directory(folder)) throw InputError(folder, "is no capture: there is no such folder");
     if (!std::filesystem::exists(path)) throw InputError(folder, "is no capture: it has no " + std::string(kManifestFile));
-    Json json;
-    try {
-        json = Json::parse(readFile(path));
-    } catch (const Json::exception& error) {
-        const std::string why = error.what();
-        const std::size_t at = why.find("line ");
-        throw InputError(path, "is no JSON" + (at == std::string::npos ? std::string() : ": " + why.substr(at)));
-    }
-    return captureFromManifest(json, path);
+    return captureFromManifest(parseJson(readFile(path), path), path);
 }
 
 Capture readCapture(const std::string& folder)

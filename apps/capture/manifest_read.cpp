@@ -1,5 +1,5 @@
-#include "apps/capture/json_reader.h"
 #include "apps/capture/manifest.h"
+#include "core/base/json_reader.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -163,7 +163,7 @@ Buffer buffer(const JsonReader& in)
     b.name = in["name"].text();
     if (b.name.empty() || b.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.") != std::string::npos)
         in["name"].fail("must be of letters, digits, '_' and '.'");
-    const JsonReader named(in.json(), in.path() + " (" + b.name + ")");
+    const JsonReader named(in.json(), in.path() + " (" + b.name + ")", ": ");
     b.pass = named["pass"].text();
     b.file = fileName(named["file"]);
     b.dtype = dtypeByName(named["dtype"].text(), named["dtype"].path());
@@ -195,7 +195,7 @@ Buffer buffer(const JsonReader& in)
 
 Capture captureFromManifest(const nlohmann::ordered_json& manifest, const std::string& place)
 {
-    const JsonReader in(manifest, place);
+    const JsonReader in(manifest, place, ": ");
     if (in["format"].text() != kCaptureFormat) in["format"].fail("must be \"" + std::string(kCaptureFormat) + "\": this is no capture");
     if (in["format_version"].whole(0, kMaxInt) != kCaptureFormatVersion)
         in["format_version"].fail("is not " + std::to_string(kCaptureFormatVersion) + ", which this program reads; make the capture anew");

@@ -1,6 +1,7 @@
 #include "apps/capture/manifest.h"
 
 #include "apps/capture/tables.h"
+#include "apps/common/describe.h"
 #include "conetrace/frame/direct.h"
 #include "core/base/elementary.h"
 #include "core/scene/brdf.h"
@@ -13,11 +14,6 @@ namespace lrsm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vector(const Vec3& v)
-{
-    return {v.x, v.y, v.z};
-}
 
 Json rowsOf(const Mat4& m)
 {
@@ -67,32 +63,16 @@ Json sceneJson(const Capture& c)
     for (const Material& material : c.materials) materials.push_back(materialJson(material));
     return {{"name", c.sceneName},
             {"sha256", c.sceneHash},
-            {"bounds", c.sceneBounds.empty() ? Json(nullptr) : Json{{"min", vector(c.sceneBounds.min)}, {"max", vector(c.sceneBounds.max)}}},
+            {"bounds", c.sceneBounds.empty() ? Json(nullptr) : Json{{"min", vectorJson(c.sceneBounds.min)}, {"max", vectorJson(c.sceneBounds.max)}}},
             {"complete", c.sceneComplete},
             {"materials", materials}};
 }
 
-Json requiresJson(const Requirements& needs)
-{
-    return {{"specular", needs.specular},
-            {"alpha_test", needs.alphaTest},
-            {"normal_maps", needs.normalMaps},
-            {"textures", needs.textures},
-            {"vertex_colors", needs.vertexColors}};
-}
-
 Json cameraJson(const Capture& c)
 {
-    const Camera& camera = c.camera;
-    Json json = {{"name", camera.name},
-                 {"position", vector(camera.position)},
-                 {"forward", vector(camera.forward)},
-                 {"up", vector(camera.up)},
-                 {"right", vector(glm::normalize(glm::cross(camera.forward, camera.up)))},
-                 {"perspective", camera.perspective}};
-    json[camera.perspective ? "vertical_fov" : "vertical_extent"] = camera.perspective ? camera.verticalFov : camera.verticalExtent;
-    json["near_plane"] = camera.nearPlane;
-    json["clip_from_world"] = rowsOf(clipFromWorld(camera, c.width, c.height, c.sceneBounds));
+    Json json = cameraJson(c.camera, Angle::radians);
+    json["right"] = vectorJson(glm::normalize(glm::cross(c.camera.forward, c.camera.up)));
+    json["clip_from_world"] = rowsOf(clipFromWorld(c.camera, c.width, c.height, c.sceneBounds));
     return json;
 }
 
@@ -102,15 +82,21 @@ Json gridJson(const Capture& c)
     shape.axes = c.settings.voxel.axes;
     Json scales = Json::array();
     for (int level = 0; c.grid.resolution >> level >= 1; ++level) scales.push_back(densityScale(shape, level));
-    return {{"origin", vector(c.grid.origin)}, {"voxel_size", c.grid.voxelSize}, {"edge", double(c.grid.voxelSize) * c.grid.resolution},
-            {"resolution", c.grid.resolution}, {"levels", scales.size()},        {"density_scale", scales}};
+    return {{"origin", vectorJson(c.grid.origin)}, {"voxel_size", c.grid.voxelSize}, {"edge", double(c.grid.voxelSize) * c.grid.resolution},
+            {"resolution", c.grid.resolution},     {"levels", scales.size()},        {"density_scale", scales}};
 }
 
 Json projectionJson(const LightProjection& p)
 {
-    return {{"position", vector(p.position)}, {"right", vector(p.right)},   {"up", vector(p.up)},
-            {"forward", vector(p.forward)},   {"half_width", p.halfWidth},  {"depth_near", p.depthNear},
-            {"depth_far", p.depthFar},        {"resolution", p.resolution}, {"clip_from_world", rowsOf(clipFromWorld(p))}};
+    return {{"position", vectorJson(p.position)},
+            {"right", vectorJson(p.right)},
+            {"up", vectorJson(p.up)},
+            {"forward", vectorJson(p.forward)},
+            {"half_width", p.halfWidth},
+            {"depth_near", p.depthNear},
+            {"depth_far", p.depthFar},
+            {"resolution", p.resolution},
+            {"clip_from_world", rowsOf(clipFromWorld(p))}};
 }
 
 Json partitionJson(const CapturedLight& light)
@@ -132,17 +118,17 @@ Json partitionJson(const CapturedLight& light)
     return layers;
 }
 
-Json lightJson(const CapturedLight& from)
+Json capturedLightJson(const CapturedLight& from)
 {
     const Light& light = from.light;
     int levels = 0;
     for (int n = from.projection.resolution / 2; n >= 1; n /= 2) ++levels;
     return {{"name", light.name},
             {"type", nameOf(light.type)},
-            {"position", vector(light.position)},
-            {"direction", vector(light.direction)},
-            {"up", vector(light.up)},
-            {"intensity", vector(light.intensity)},
+            {"position", vectorJson(light.position)},
+            {"direction", vectorJson(light.direction)},
+            {"up", vectorJson(light.up)},
+            {"intensity", vectorJson(light.intensity)},
             {"inner_cone_angle", light.innerConeAngle},
             {"outer_cone_angle", light.outerConeAngle},
             {"cos_inner", static_cast<float>(sinCos(light.innerConeAngle).cos)},
@@ -232,16 +218,18 @@ Json manifestJson(const Capture& c)
 {
     const CaptureTables tables = makeTables(c.needs, c.settings);
     const GatherPlan& plan = tables.plan;
+    Json needs = requirementsJson(c.needs);
+    needs.erase("left_out");
     return {{"format", kCaptureFormat},
             {"format_version", kCaptureFormatVersion},
             {"version", c.version},
             {"size", {c.width, c.height}},
             {"scene", sceneJson(c)},
             {"settings", settingsToJson(c.settings)},
-            {"requires", requiresJson(c.needs)},
+            {"requires", needs},
             {"camera", cameraJson(c)},
             {"grid", gridJson(c)},
-            {"lights", listOf(c.lights, lightJson)},
+            {"lights", listOf(c.lights, capturedLightJson)},
             {"cones", conesJson(c, plan)},
             {"gaussian", gaussianJson(tables.phi)},
             {"constants", constantsJson()},

@@ -1,15 +1,13 @@
 #include "apps/check/candidate_map.h"
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_reader.h"
 
-#include <nlohmann/json.hpp>
+#include <limits>
 
 namespace lrsm {
 
 namespace {
-
-using MapJson = nlohmann::ordered_json;
 
 std::size_t channelIndex(char letter, const std::string& place)
 {
@@ -19,77 +17,60 @@ std::size_t channelIndex(char letter, const std::string& place)
     throw InputError(place, std::string("\"") + letter + "\" is none of r g b a x y z w");
 }
 
-std::vector<std::size_t> channelsFrom(const MapJson& json, const std::string& place)
+std::vector<std::size_t> numbersFrom(const JsonReader& in)
+{
+    std::vector<std::size_t> numbers;
+    for (const JsonReader& each : in.items()) numbers.push_back(each.count());
+    return numbers;
+}
+
+std::vector<std::size_t> channelsFrom(const JsonReader& in)
 {
     std::vector<std::size_t> channels;
-    if (json.is_string())
-        for (const char letter : json.get<std::string>()) channels.push_back(channelIndex(letter, place));
+    if (in.json().is_string())
+        for (const char letter : in.text()) channels.push_back(channelIndex(letter, in.path()));
     else
-        for (const MapJson& each : json) {
-            if (!each.is_number_unsigned()) throw InputError(place, "must be letters, as \"bgra\", or numbers from 0 on");
-            channels.push_back(each.get<std::size_t>());
-        }
-    if (channels.empty()) throw InputError(place, "names no channel");
+        channels = numbersFrom(in);
+    if (channels.empty()) in.fail("names no channel, as \"bgra\" or [2, 1, 0] do");
     return channels;
 }
 
-template <class T>
-T valueFrom(const MapJson& json, const char* what, const std::string& place)
-{
-    try {
-        return json.get<T>();
-    } catch (const MapJson::exception&) {
-        throw InputError(place, std::string("must be ") + what);
-    }
-}
-
-std::vector<std::size_t> layersFrom(const MapJson& json, const std::string& place)
-{
-    std::vector<std::size_t> layers;
-    for (const MapJson& each : json) {
-        if (!each.is_number_unsigned()) throw InputError(place, "must be a list of numbers from 0 on");
-        layers.push_back(each.get<std::size_t>());
-    }
-    return layers;
-}
-
-MapEntry entryFrom(const std::string& pattern, const MapJson& json, const std::string& place)
+MapEntry entryFrom(const std::string& pattern, const JsonReader& in)
 {
     MapEntry entry;
     entry.pattern = pattern;
-    if (json.is_string()) {
-        entry.file = json.get<std::string>();
+    if (in.json().is_string()) {
+        entry.file = in.text();
         return entry;
     }
-    if (!json.is_object()) throw InputError(place, "must be a file's name or an object with \"file\"");
-    for (const auto& [key, value] : json.items()) {
-        const std::string at = place + "." + key;
+    if (!in.json().is_object()) in.fail("must be a file's name or an object with \"file\"");
+    for (const auto& [key, value] : in.members()) {
         if (key == "file")
-            entry.file = valueFrom<std::string>(value, "a file's name", at);
+            entry.file = value.text();
         else if (key == "layer")
-            entry.layer = valueFrom<std::string>(value, "the name of an EXR's layer", at);
+            entry.layer = value.text();
         else if (key == "mip")
-            entry.mip = valueFrom<int>(value, "a mip's number", at);
+            entry.mip = static_cast<int>(value.whole(-1, std::numeric_limits<int>::max()));
         else if (key == "dtype")
-            entry.dtype = std::string(nameOf(dtypeByName(valueFrom<std::string>(value, "an element type", at), at)));
+            entry.dtype = std::string(nameOf(dtypeByName(value.text(), value.path())));
         else if (key == "axes")
-            entry.how.axes = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
+            entry.how.axes = value.texts();
         else if (key == "flip")
-            entry.how.flip = valueFrom<std::vector<std::string>>(value, "a list of axes' names", at);
+            entry.how.flip = value.texts();
         else if (key == "layers")
-            entry.how.layers = layersFrom(value, at);
+            entry.how.layers = numbersFrom(value);
         else if (key == "channels")
-            entry.how.channels = channelsFrom(value, at);
+            entry.how.channels = channelsFrom(value);
         else if (key == "scale")
-            entry.how.scale = valueFrom<double>(value, "a number", at);
+            entry.how.scale = value.number();
         else if (key == "offset")
-            entry.how.offset = valueFrom<double>(value, "a number", at);
+            entry.how.offset = value.number();
         else if (key == "encoding")
-            entry.how.encoding = encodingByName(valueFrom<std::string>(value, "number, unorm or bits", at), at);
+            entry.how.encoding = encodingByName(value.text(), value.path());
         else
-            throw InputError(at, "is no key of a map; they are file, layer, mip, dtype, axes, flip, layers, channels, scale, offset, encoding");
+            value.fail("is no key of a map; they are file, layer, mip, dtype, axes, flip, layers, channels, scale, offset, encoding");
     }
-    if (entry.file.empty()) throw InputError(place, "has no \"file\"");
+    if (entry.file.empty()) in.fail("has no \"file\"");
     return entry;
 }
 
@@ -97,17 +78,10 @@ MapEntry entryFrom(const std::string& pattern, const MapJson& json, const std::s
 
 std::vector<MapEntry> readCandidateMap(const std::string& path)
 {
-    MapJson json;
-    try {
-        json = MapJson::parse(readFile(path));
-    } catch (const MapJson::exception& error) {
-        const std::string why = error.what();
-        const std::size_t at = why.find("line ");
-        throw InputError(path, "is no JSON" + (at == std::string::npos ? std::string() : ": " + why.substr(at)));
-    }
+    const JsonReader::Json json = parseJson(readFile(path), path);
     if (!json.is_object()) throw InputError(path, "must be an object: buffer names with the files that hold them");
     std::vector<MapEntry> map;
-    for (const auto& [key, value] : json.items()) map.push_back(entryFrom(key, value, path + ": " + key));
+    for (const auto& [key, value] : JsonReader(json, path).members()) map.push_back(entryFrom(key, value));
     return map;
 }
 

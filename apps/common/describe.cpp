@@ -73,17 +73,19 @@ Json vectorJson(const Vec3& v)
     return {v.x, v.y, v.z};
 }
 
-Json cameraJson(const Camera& camera)
+Json cameraJson(const Camera& camera, Angle angle)
 {
     Json json = {{"name", camera.name},
                  {"position", vectorJson(camera.position)},
                  {"forward", vectorJson(camera.forward)},
                  {"up", vectorJson(camera.up)},
                  {"perspective", camera.perspective}};
-    if (camera.perspective)
-        json["vertical_fov_degrees"] = camera.verticalFov * kDegrees;
-    else
+    if (!camera.perspective)
         json["vertical_extent"] = camera.verticalExtent;
+    else if (angle == Angle::radians)
+        json["vertical_fov"] = camera.verticalFov;
+    else
+        json["vertical_fov_degrees"] = camera.verticalFov * kDegrees;
     json["near_plane"] = camera.nearPlane;
     return json;
 }

@@ -6,14 +6,16 @@
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
 
-/// What is in a scene, for people and as JSON: shared by info, render and reference.
+/// What is in a scene, for people and as JSON: shared by info, render, reference and captures.
 namespace lrsm {
 
 /// Indented, ending in a newline; bytes that are no UTF-8 (file names may hold any) become U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& json);
 
 nlohmann::ordered_json vectorJson(const Vec3& v);
-nlohmann::ordered_json cameraJson(const Camera& camera);
+/// The field of view in degrees is for people (vertical_fov_degrees); in radians it is the camera's to the last bit (vertical_fov).
+enum class Angle { degrees, radians };
+nlohmann::ordered_json cameraJson(const Camera& camera, Angle angle = Angle::degrees);
 nlohmann::ordered_json lightJson(const Light& light);
 /// Name, hash, counts, bounds, notes; the hash is `sha256` of the scene as loaded.
 nlohmann::ordered_json sceneJson(const Scene& scene, const std::string& sha256);

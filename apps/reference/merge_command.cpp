@@ -1,13 +1,12 @@
 #include "apps/common/commands.h"
 #include "apps/common/describe.h"
 #include "apps/reference/reference_files.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_reader.h"
 
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 
@@ -32,8 +31,7 @@ Checkpoint readFinished(const std::string& folder)
 Json readFrameJson(const std::string& folder)
 {
     const std::string file = (std::filesystem::path(folder) / "frame.json").string();
-    const std::vector<unsigned char> bytes = readFile(file);
-    Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    Json json = parseJson(readFile(file), file);
     if (!json.is_object()) throw InputError(file, "is no frame.json");
     return json;
 }

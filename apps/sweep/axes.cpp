@@ -1,12 +1,11 @@
 #include "apps/sweep/axes.h"
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_reader.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 
@@ -62,12 +61,7 @@ Axis parseAxis(const std::string& text)
 
 std::vector<Axis> readAxes(const std::string& path)
 {
-    Json json;
-    try {
-        json = Json::parse(readFile(path));
-    } catch (const Json::exception&) {
-        throw InputError(path, "is no JSON; write {\"cone_count\": [4, 6, 12], ...}");
-    }
+    const Json json = parseJson(readFile(path), path, "write {\"cone_count\": [4, 6, 12], ...}");
     if (!json.is_object() || json.empty()) throw InputError(path, "must be an object of lists, as {\"cone_count\": [4, 6, 12]}");
     std::vector<Axis> axes;
     for (const auto& [key, values] : json.items()) {

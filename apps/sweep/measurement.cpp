@@ -1,11 +1,10 @@
 #include "apps/sweep/measurement.h"
 
-#include "core/base/errors.h"
+#include "core/base/json_reader.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 
@@ -22,55 +21,11 @@ Json numberJson(double value)
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-/// Reads entries of one row, naming what is wrong.
-class RowReader {
-  public:
-    RowReader(const Json& json, const std::string& place) : json_(json), place_(place)
-    {
-        if (!json.is_object()) throw InputError(place, "must be a JSON object, a row of a sweep");
-    }
-
-    const Json& entry(const std::string& name) const
-    {
-        const auto found = json_.find(name);
-        if (found == json_.end()) throw InputError(place_, "has no entry \"" + name + "\"; is it a row of `lrsm sweep`?");
-        return *found;
-    }
-
-    /// NaN for null.
-    double number(const std::string& name) const
-    {
-        const Json& value = entry(name);
-        if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
-        if (!value.is_number()) refuse(name, "a number");
-        return value.get<double>();
-    }
-
-    std::uint64_t count(const std::string& name) const
-    {
-        const Json& value = entry(name);
-        if (!value.is_number_integer() || (!value.is_number_unsigned() && value.get<std::int64_t>() < 0)) refuse(name, "a whole number, not negative");
-        return value.get<std::uint64_t>();
-    }
-
-    const Json& object(const std::string& name) const
-    {
-        if (!entry(name).is_object()) refuse(name, "an object");
-        return entry(name);
-    }
-    std::string text(const std::string& name) const
-    {
-        const Json& value = entry(name);
-        if (!value.is_string()) refuse(name, "a string");
-        return value.get<std::string>();
-    }
-
-    [[noreturn]] void refuse(const std::string& name, const std::string& wanted) const { throw InputError(place_ + ": " + name, "must be " + wanted); }
-
-  private:
-    const Json& json_;
-    const std::string& place_;
-};
+/// NaN for null.
+double numberIn(const JsonReader& in)
+{
+    return in.isNull() ? std::numeric_limits<double>::quiet_NaN() : in.number();
+}
 
 void addTime(Json& json, const std::string& column, const RepeatedTime& time)
 {
@@ -79,17 +34,17 @@ void addTime(Json& json, const std::string& column, const RepeatedTime& time)
     json[column + "_spread"] = numberJson(time.spread);
 }
 
-RepeatedTime readTime(const RowReader& reader, const std::string& column)
+RepeatedTime readTime(const JsonReader& in, const std::string& column)
 {
-    return {reader.number(column), reader.number(column + "_min"), reader.number(column + "_spread")};
+    return {numberIn(in[column]), numberIn(in[column + "_min"]), numberIn(in[column + "_spread"])};
 }
 
-RowKind kindNamed(const RowReader& reader)
+RowKind kindNamed(const JsonReader& in)
 {
-    const std::string text = reader.text("kind");
+    const std::string text = in.text();
     for (const auto& [kind, name] : kKinds)
         if (text == name) return kind;
-    reader.refuse("kind", "preset, axis, search or path_tracer");
+    in.fail("must be preset, axis, search or path_tracer");
 }
 
 }  // namespace
@@ -143,28 +98,6 @@ Json countersJson(const Counters& counters)
     Json json = Json::object();
     for (const Counter& counter : counters) json[counter.name] = numberJson(counter.value);
     return json;
-}
-
-std::vector<PassTime> readPasses(const Json& json, const std::string& place)
-{
-    std::vector<PassTime> passes;
-    for (const auto& [family, entry] : json.items()) {
-        const std::string where = place + ": passes: " + family;
-        const RowReader reader(entry, where);
-        const Json& perPixel = reader.entry("per_pixel");
-        if (!perPixel.is_boolean()) reader.refuse("per_pixel", "true or false");
-        passes.push_back({family, perPixel.get<bool>(), {reader.number("ms"), reader.number("ms_min"), reader.number("ms_spread")}});
-    }
-    return passes;
-}
-
-Counters readCounters(const Json& json, const std::string& place)
-{
-    Counters counters;
-    const std::string where = place + ": counters";
-    const RowReader reader(json, where);
-    for (const auto& [name, unused] : json.items()) counters.push_back({name, reader.number(name)});
-    return counters;
 }
 
 }  // namespace
@@ -226,34 +159,35 @@ Json measurementColumns(const Measurement& row)
 
 Measurement measurementFromJson(const Json& json, const std::string& place)
 {
-    const RowReader reader(json, place);
+    const JsonReader in(json, place);
     Measurement row;
-    row.scene = reader.text("scene");
-    row.caseKey = reader.text("case");
-    row.key = reader.text("key");
-    row.label = reader.text("label");
-    row.kind = kindNamed(reader);
-    row.base = reader.text("base");
-    row.samples = reader.count("spp");
-    row.width = static_cast<int>(reader.count("width"));
-    row.height = static_cast<int>(reader.count("height"));
-    row.truthSamples = reader.count("truth_spp");
+    row.scene = in["scene"].text();
+    row.caseKey = in["case"].text();
+    row.key = in["key"].text();
+    row.label = in["label"].text();
+    row.kind = kindNamed(in["kind"]);
+    row.base = in["base"].text();
+    row.samples = in["spp"].count();
+    row.width = static_cast<int>(in["width"].count());
+    row.height = static_cast<int>(in["height"].count());
+    row.truthSamples = in["truth_spp"].count();
     // `net` follows from rmse and noise.
-    row.error = {reader.number("energy"), reader.number("rmse"), reader.number("mae"), reader.number("flip"), reader.number("noise")};
-    row.frame = readTime(reader, "frame_ms");
-    row.frameCpu = reader.number("frame_cpu_ms");
-    row.calibrationCpu = reader.number("calibration_cpu_ms");
-    row.cost = reader.number("cost");
-    row.passes = readPasses(reader.object("passes"), place);
-    row.counters = readCounters(reader.object("counters"), place);
-    row.rays = reader.count("rays");
-    if (!reader.entry("instructions").is_null()) row.instructions = reader.count("instructions");
-    row.bytes = reader.count("bytes");
-    row.gpuBytes = reader.count("gpu_bytes");
-    row.irradianceSha256 = reader.text("irradiance_sha256");
+    row.error = {numberIn(in["energy"]), numberIn(in["rmse"]), numberIn(in["mae"]), numberIn(in["flip"]), numberIn(in["noise"])};
+    row.frame = readTime(in, "frame_ms");
+    row.frameCpu = numberIn(in["frame_cpu_ms"]);
+    row.calibrationCpu = numberIn(in["calibration_cpu_ms"]);
+    row.cost = numberIn(in["cost"]);
+    for (const auto& [family, entry] : in["passes"].members())
+        row.passes.push_back({family, entry["per_pixel"].flag(), {numberIn(entry["ms"]), numberIn(entry["ms_min"]), numberIn(entry["ms_spread"])}});
+    for (const auto& [name, entry] : in["counters"].members()) row.counters.push_back({name, numberIn(entry)});
+    row.rays = in["rays"].count();
+    if (!in["instructions"].isNull()) row.instructions = in["instructions"].count();
+    row.bytes = in["bytes"].count();
+    row.gpuBytes = in["gpu_bytes"].count();
+    row.irradianceSha256 = in["irradiance_sha256"].text();
     if (row.kind == RowKind::pathTracer) return row;
     Json settings = settingsToJson(row.settings);
-    for (auto& [key, value] : settings.items()) value = reader.entry(key);
+    for (auto& [key, value] : settings.items()) value = in[key].json();
     applySettingsJson(row.settings, settings, place);
     return row;
 }

@@ -1,8 +1,8 @@
 #include "apps/sweep/row_store.h"
 
 #include "apps/sweep/measure.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_reader.h"
 #include "core/base/output_folder.h"
 
 #include <fcntl.h>
@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 namespace lrsm {
@@ -144,13 +143,8 @@ void RowStore::read()
             break;
         }
         const std::string place = path + ":" + std::to_string(++number);
-        Json json;
-        try {
-            json = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin), bytes.begin() + static_cast<std::ptrdiff_t>(end));
-        } catch (const Json::exception&) {
-            throw InputError(place, "is damaged: no JSON; remove this line to measure its row again");
-        }
-        Measurement row = measurementFromJson(json, place);
+        const std::string_view line(reinterpret_cast<const char*>(bytes.data()) + begin, end - begin);
+        Measurement row = measurementFromJson(parseJson(line, place, "remove this line to measure its row again"), place);
         if (byKey_.emplace(row.key, rows_.size()).second) {
             otherVersions_ += row.key != keyByThisVersion(row);
             rows_.push_back(std::move(row));

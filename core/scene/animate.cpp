@@ -25,18 +25,18 @@ DMat4 compose(const LocalTransform& local)
 
 /// The keyframes about a time and how far it is between them; outside the range both are the end.
 struct Span {
-    std::size_t k0, k1;
-    double t, duration;
+    std::size_t k0 = 0, k1 = 0;
+    double t = 0.0, duration = 0.0;
 };
 
 Span spanAt(const std::vector<float>& times, float time)
 {
     const auto next = std::upper_bound(times.begin(), times.end(), time);
-    if (next == times.begin()) return {0, 0, 0.0, 0.0};
-    if (next == times.end()) return {times.size() - 1, times.size() - 1, 0.0, 0.0};
+    if (next == times.begin()) return {};
+    if (next == times.end()) return {times.size() - 1, times.size() - 1};
     const auto k1 = std::size_t(next - times.begin()), k0 = k1 - 1;
     const double duration = double(times[k1]) - double(times[k0]);
-    return {k0, k1, (double(time) - double(times[k0])) / duration, duration};
+    return {.k0 = k0, .k1 = k1, .t = (double(time) - double(times[k0])) / duration, .duration = duration};
 }
 
 void normalize(std::span<double> quaternion)

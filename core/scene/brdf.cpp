@@ -3,6 +3,8 @@
 // glTF 2.0, section 3.9 (material), 3.7.2.1 (tangent space), appendix B (BRDF).
 #include "core/scene/brdf.h"
 
+#include "core/scene/texture_sampling.h"
+
 namespace lrsm {
 namespace {
 
@@ -23,7 +25,7 @@ struct Triangle {
 Triangle triangleAt(const Scene& scene, const SurfaceHit& hit)
 {
     const Mesh& mesh = scene.meshes[hit.mesh];
-    return {mesh, mesh.triangles[hit.triangle], 1.0f - hit.b1 - hit.b2, hit.b1, hit.b2};
+    return {.mesh = mesh, .index = mesh.triangles[hit.triangle], .b0 = 1.0f - hit.b1 - hit.b2, .b1 = hit.b1, .b2 = hit.b2};
 }
 
 const std::vector<Vec2>& uvStream(const Mesh& mesh, const TextureUse& use)

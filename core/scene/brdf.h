@@ -36,11 +36,6 @@ bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit);
 /// `specularColor` is exactly 0.
 bool hasSpecularPart(const Material& material);
 
-/// Bilinear (or nearest) lookup at uv with the texture's wrap modes, texel centres at +0.5. Raw 8-bit channels / 255, no sRGB decoding.
-Vec4 sampleTexture(const Texture& texture, Vec2 uv);
-/// The same, each texel's colour decoded from sRGB to linear before filtering (alpha is linear).
-Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv);
-
 /// Smallest GGX alpha evaluated: a smoother surface shines as this one (a delta light in a perfect mirror has no finite value).
 inline constexpr float kMinSpecularAlpha = 1e-3f;
 

@@ -3,7 +3,7 @@
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
-#include "core/scene/gltf_read.h"
+#include "core/scene/gltf_document.h"
 #include "core/scene/pose_asset.h"
 
 #include <algorithm>
@@ -132,36 +132,7 @@ void checkNotEmpty(const Scene& scene, const std::string& file)
     throw InputError(file, "no triangle of the scene has an area");
 }
 
-void noteExtensions(const Document& document, Asset& asset)
-{
-    std::string ignored;
-    for (const Json& name : document.json.value("extensionsUsed", Json::array())) {
-        const std::string text = name.get<std::string>();
-        if (text != "KHR_lights_punctual" && text != "KHR_texture_transform" && text != "KHR_mesh_quantization")
-            ignored += (ignored.empty() ? "" : ", ") + text;
-    }
-    if (!ignored.empty()) asset.notes.push_back("extensions ignored: " + ignored);
-}
-
 }  // namespace
-
-Asset readAsset(const std::string& path)
-{
-    const Document document = readDocument(path);
-    Asset asset;
-    asset.file = path;
-    readMaterials(document, asset);
-    readImages(document, asset);
-    readMeshes(document, asset);
-    readNodes(document, asset);
-    readSkins(document, asset);
-    readAnimations(document, asset);
-    readLights(document, asset);
-    readCameras(document, asset);
-    noteExtensions(document, asset);
-    return asset;
-}
-
 }  // namespace gltf
 
 Scene loadGltf(const std::string& path, const LoadOptions& options)

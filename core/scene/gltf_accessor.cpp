@@ -15,14 +15,10 @@ struct Layout {
 
 Layout layoutOf(const tinygltf::Accessor& accessor)
 {
-    return {accessor.componentType, accessor.normalized, std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))),
-            std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType)))};
-}
-
-const unsigned char* viewData(const Document& document, int view, std::size_t offset)
-{
-    const tinygltf::BufferView& v = document.model.bufferViews[std::size_t(view)];
-    return document.buffers[std::size_t(v.buffer)].data() + v.byteOffset + offset;
+    return {.componentType = accessor.componentType,
+            .normalized = accessor.normalized,
+            .components = std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))),
+            .componentSize = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType)))};
 }
 
 template <class T>
@@ -64,14 +60,14 @@ void forEachElement(const Document& document, int index, const Store& store)
     if (accessor.bufferView >= 0) {
         const std::size_t given = document.model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
         const std::size_t stride = given ? given : layout.elementSize();
-        const unsigned char* bytes = viewData(document, accessor.bufferView, accessor.byteOffset);
+        const unsigned char* bytes = bufferViewBytes(document, accessor.bufferView).data() + accessor.byteOffset;
         for (std::size_t i = 0; i < accessor.count; ++i) store(i, bytes + i * stride);
     }
     if (!accessor.sparse.isSparse) return;
     const auto& sparse = accessor.sparse;
     const auto indexSize = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(sparse.indices.componentType)));
-    const unsigned char* indices = viewData(document, sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset));
-    const unsigned char* values = viewData(document, sparse.values.bufferView, std::size_t(sparse.values.byteOffset));
+    const unsigned char* indices = bufferViewBytes(document, sparse.indices.bufferView).data() + sparse.indices.byteOffset;
+    const unsigned char* values = bufferViewBytes(document, sparse.values.bufferView).data() + sparse.values.byteOffset;
     for (std::size_t i = 0; i < std::size_t(sparse.count); ++i) {
         const std::size_t element = loadIndex(indices + i * indexSize, sparse.indices.componentType);
         if (element >= accessor.count) document.fail(at("accessors", std::size_t(index)) + ".sparse.indices", std::to_string(element) + " is no element");
@@ -79,39 +75,79 @@ void forEachElement(const Document& document, int index, const Store& store)
     }
 }
 
+/// An accessor without a buffer view costs the file nothing; this many zeros is more than any honest use.
+constexpr std::uint64_t kMaxImplicitElements = 1 << 24;
+
+void checkBufferViews(const Document& document)
+{
+    for (std::size_t i = 0; i < document.model.bufferViews.size(); ++i) {
+        const tinygltf::BufferView& view = document.model.bufferViews[i];
+        const std::uint64_t size = document.buffers[std::size_t(view.buffer)].size();
+        if (view.byteOffset > size || view.byteLength > size - view.byteOffset)
+            document.fail(at("bufferViews", i), "reaches past the end of buffer " + std::to_string(view.buffer));
+        if (view.byteStride % 4 != 0) document.fail(at("bufferViews", i) + ".byteStride", "must be a multiple of 4");
+    }
+}
+
+/// `count` elements of `size` bytes, `stride` apart, fit in the view. All below 2^54, so nothing overflows.
+void checkRange(const Document& document, int view, std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t size,
+                const std::string& path)
+{
+    const std::uint64_t length = document.model.bufferViews[std::size_t(view)].byteLength;
+    if (offset > length || (count - 1) * stride + size > length - offset) document.fail(path, "reaches past the end of bufferView " + std::to_string(view));
+}
+
+void checkAccessor(const Document& document, std::size_t i)
+{
+    const tinygltf::Accessor& accessor = document.model.accessors[i];
+    const std::string path = at("accessors", i);
+    const std::uint64_t size = layoutOf(accessor).elementSize();
+    if (accessor.bufferView >= 0) {
+        const std::uint64_t given = document.model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
+        if (given != 0 && given < size) document.fail(path, "its bufferView's byteStride is smaller than an element");
+        checkRange(document, accessor.bufferView, accessor.byteOffset, accessor.count, given ? given : size, size, path);
+    } else if (accessor.count > kMaxImplicitElements) {
+        document.fail(path + ".count", "more than " + std::to_string(kMaxImplicitElements) + " elements without a bufferView");
+    }
+
+    const auto& sparse = accessor.sparse;
+    if (!sparse.isSparse) return;
+    if (std::uint64_t(sparse.count) > accessor.count) document.fail(path + ".sparse.count", "is larger than the accessor's count");
+    const auto indexSize = std::uint64_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(sparse.indices.componentType)));
+    checkRange(document, sparse.indices.bufferView, std::uint64_t(sparse.indices.byteOffset), std::uint64_t(sparse.count), indexSize, indexSize,
+               path + ".sparse.indices");
+    checkRange(document, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset), std::uint64_t(sparse.count), size, size, path + ".sparse.values");
+}
+
 }  // namespace
+
+void checkAccessors(const Document& document)
+{
+    checkBufferViews(document);
+    for (std::size_t i = 0; i < document.model.accessors.size(); ++i) checkAccessor(document, i);
+}
+
+std::span<const unsigned char> bufferViewBytes(const Document& document, int view)
+{
+    const tinygltf::BufferView& v = document.model.bufferViews[std::size_t(view)];
+    return std::span(document.buffers[std::size_t(v.buffer)]).subspan(v.byteOffset, v.byteLength);
+}
 
 void requireFormat(const Document& document, int accessor, std::string_view allowed, const std::string& jsonPath)
 {
+    constexpr const char* kComponents[] = {"s8", "u8", "s16", "u16", "", "u32", "f"};  // from 5120 on
     const tinygltf::Accessor& a = document.model.accessors[std::size_t(accessor)];
-    const auto typeName = [&]() -> std::string {
-        switch (a.type) {
-        case TINYGLTF_TYPE_SCALAR: return "SCALAR";
-        case TINYGLTF_TYPE_VEC2: return "VEC2";
-        case TINYGLTF_TYPE_VEC3: return "VEC3";
-        case TINYGLTF_TYPE_VEC4: return "VEC4";
-        default: return "MAT";
-        }
-    };
-    const auto componentName = [&]() -> std::string {
-        const std::string n = a.normalized ? "n" : "";
-        switch (a.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return n + "s8";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return n + "u8";
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return n + "s16";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return n + "u16";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return n + "u32";
-        default: return "f";
-        }
-    };
+    const std::string type = document.json["accessors"][std::size_t(accessor)]["type"].get<std::string>();
+    const std::string component =
+        std::string(a.normalized && a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT ? "n" : "") + kComponents[a.componentType - TINYGLTF_COMPONENT_TYPE_BYTE];
     bool typeFits = false, componentFits = false;
     std::istringstream words{std::string(allowed)};
     for (std::string word; words >> word;) {
-        typeFits |= word == typeName();
-        componentFits |= word == componentName();
+        typeFits |= word == type;
+        componentFits |= word == component;
     }
     if (!typeFits || !componentFits)
-        document.fail(jsonPath, "accessor " + std::to_string(accessor) + " is " + typeName() + " " + componentName() + ", allowed: " + std::string(allowed));
+        document.fail(jsonPath, "accessor " + std::to_string(accessor) + " is " + type + " " + component + ", allowed: " + std::string(allowed));
 }
 
 std::vector<float> readFloats(const Document& document, int accessor)

@@ -3,10 +3,17 @@
 #include "core/base/math.h"
 #include "core/scene/gltf_document.h"
 
+#include <span>
 #include <string_view>
 
 /// Private to the glTF loader: accessors as typed arrays. Strides, sparse values and normalised integers are resolved.
 namespace lrsm::gltf {
+
+/// Buffer views lie in their buffers and accessors in their views, sparse ones too. All below relies on it.
+void checkAccessors(const Document& document);
+
+/// The bytes of a buffer view.
+std::span<const unsigned char> bufferViewBytes(const Document& document, int view);
 
 /// Which element and component types a use of an accessor allows: "VEC3 f", "VEC3 VEC4 f nu8 nu16" (n: normalised).
 /// f float, u8, u16, u32, s8, s16 integers.

@@ -106,4 +106,7 @@ struct Asset {
     std::vector<std::string> notes;
 };
 
+/// The whole file, validated and parsed; images still encoded. Throws InputError.
+Asset readAsset(const std::string& path);
+
 }  // namespace lrsm::gltf

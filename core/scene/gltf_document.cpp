@@ -1,112 +1,81 @@
 #include "core/scene/gltf_document.h"
 
 #include "core/base/file.h"
+#include "core/scene/gltf_schema.h"
 
-#include <openssl/evp.h>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string_view>
 
 namespace lrsm::gltf {
 namespace {
 
-constexpr std::size_t kMaxJsonDepth = 128;  // recursion in the JSON library and in tinygltf; real files stay below 20
-
 constexpr auto kUnderstoodExtensions = std::to_array<std::string_view>({"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                                                         // Ignored, with a note where it matters: these do not change what is modelled here.
                                                                         "KHR_materials_emissive_strength"});
 
-std::uint32_t littleEndian32(const unsigned char* bytes)
-{
-    return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8 | std::uint32_t(bytes[2]) << 16 | std::uint32_t(bytes[3]) << 24;
-}
-
 struct Container {
     std::string_view json;
-    std::vector<unsigned char> binary;
-    bool hasBinary = false;
+    std::optional<std::span<const unsigned char>> binary;
 };
 
 /// glTF 2.0, section 4.4: a header of 12 bytes, then chunks of length, type, data.
-Container splitGlb(const Document& document, const std::vector<unsigned char>& file)
+Container splitGlb(const Document& document, std::span<const unsigned char> file)
 {
     constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
+    const auto word = [&](std::size_t offset) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, &file[offset], sizeof value);
+        return value;
+    };
     if (file.size() < 12) document.fail("GLB", "the file ends inside the header");
-    if (const std::uint32_t version = littleEndian32(&file[4]); version != 2)
-        document.fail("GLB", "version " + std::to_string(version) + " is not supported, only 2");
-    if (const std::uint32_t length = littleEndian32(&file[8]); length != file.size())
-        document.fail("GLB", "the header says " + std::to_string(length) + " bytes, the file has " + std::to_string(file.size()));
+    if (word(4) != 2) document.fail("GLB", "version " + std::to_string(word(4)) + " is not supported, only 2");
+    if (word(8) != file.size()) document.fail("GLB", "the header says " + std::to_string(word(8)) + " bytes, the file has " + std::to_string(file.size()));
 
     Container container;
-    std::size_t at = 12;
-    for (int chunk = 0; at < file.size(); ++chunk) {
-        if (file.size() - at < 8) document.fail("GLB", "the file ends inside a chunk header");
-        const std::size_t length = littleEndian32(&file[at]);
-        const std::uint32_t type = littleEndian32(&file[at + 4]);
-        at += 8;
-        if (length > file.size() - at) document.fail("GLB", "chunk " + std::to_string(chunk) + " is longer than the file");
+    for (std::size_t begin = 12, chunk = 0; begin < file.size(); ++chunk) {
+        if (file.size() - begin < 8) document.fail("GLB", "the file ends inside a chunk header");
+        const std::uint32_t length = word(begin), type = word(begin + 4);
+        begin += 8;
+        if (length > file.size() - begin) document.fail("GLB", "chunk " + std::to_string(chunk) + " is longer than the file");
         if ((chunk == 0) != (type == kJsonChunk)) document.fail("GLB", "the first chunk, and no other, must be JSON");
-        if (chunk == 0) container.json = {reinterpret_cast<const char*>(file.data() + at), length};
-        if (chunk == 1 && type == kBinaryChunk) {
-            container.binary.assign(file.begin() + std::ptrdiff_t(at), file.begin() + std::ptrdiff_t(at + length));
-            container.hasBinary = true;
-        }
-        at += length;
+        const std::span<const unsigned char> data = file.subspan(begin, length);
+        if (chunk == 0) container.json = {reinterpret_cast<const char*>(data.data()), data.size()};
+        if (chunk == 1 && type == kBinaryChunk) container.binary = data;
+        begin += length;
     }
     if (container.json.empty()) document.fail("GLB", "there is no JSON chunk");
     return container;
 }
 
-/// Refuses nesting that would overflow a recursive reader's stack. Brackets inside strings do not count.
-void checkDepth(const Document& document, std::string_view text)
+Container splitFile(const Document& document, const std::vector<unsigned char>& file)
 {
-    std::size_t depth = 0;
-    bool inString = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (inString) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                inString = false;
-        } else if (c == '"') {
-            inString = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kMaxJsonDepth) document.fail("JSON", "nested more than " + std::to_string(kMaxJsonDepth) + " deep");
-        } else if ((c == ']' || c == '}') && depth > 0) {
-            --depth;
-        }
-    }
+    constexpr unsigned char kMagic[] = {'g', 'l', 'T', 'F'};
+    if (file.size() >= 4 && std::equal(std::begin(kMagic), std::end(kMagic), file.begin())) return splitGlb(document, file);
+    if (file.empty()) throw InputError(document.file, "is empty");
+    const std::string_view json(reinterpret_cast<const char*>(file.data()), file.size());
+    const std::size_t first = json.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // a byte order mark is tolerated
+    if (first == std::string_view::npos || json[first] != '{') throw InputError(document.file, "is neither glTF JSON nor GLB");
+    return {json, {}};
 }
 
-Json parseJson(const Document& document, std::string_view text)
+void checkVersion(const JsonReader& asset)
 {
-    checkDepth(document, text);
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, ...": the bracketed part tells a user nothing.
-        std::string why = error.what();
-        if (const std::size_t end = why.find("] "); end != std::string::npos) why.erase(0, end + 2);
-        document.fail("JSON", why);
+    constexpr const char* kDigits = "0123456789";
+    for (const char* key : {"version", "minVersion"}) {
+        if (!asset.has(key)) continue;
+        const std::string text = asset[key].text();
+        const std::size_t dot = text.find_first_not_of(kDigits);
+        if (dot == 0 || dot >= text.size() - 1 || text[dot] != '.' || text.find_first_not_of(kDigits, dot + 1) != std::string::npos)
+            asset.fail(key, "must look like 2.0");
     }
-}
-
-void checkVersion(const Document& document)
-{
-    const auto major = [&](const std::string& key) {
-        const std::string text = document.json["asset"][key].get<std::string>();
-        const std::size_t dot = text.find('.');
-        const auto digits = [](std::string_view part) {
-            return !part.empty() && std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
-        };
-        if (dot == std::string::npos || !digits(text.substr(0, dot)) || !digits(text.substr(dot + 1))) document.fail("asset." + key, "must look like 2.0");
-        return text;
-    };
-    if (!major("version").starts_with("2.")) document.fail("asset.version", "only glTF 2 is supported");
-    if (document.json["asset"].contains("minVersion") && major("minVersion") != "2.0") document.fail("asset.minVersion", "only glTF 2.0 is supported");
+    if (!asset["version"].text().starts_with("2.")) asset.fail("version", "only glTF 2 is supported");
+    if (asset.has("minVersion") && asset["minVersion"].text() != "2.0") asset.fail("minVersion", "only glTF 2.0 is supported");
 }
 
 void checkExtensions(const Document& document)
@@ -118,25 +87,13 @@ void checkExtensions(const Document& document)
     if (!unknown.empty()) document.fail("extensionsRequired", "not supported: " + unknown);
 }
 
-/// What tinygltf shall not see: extensions and extras (read here, or not at all), and buffers and images, because its file access
-/// expands names through the shell and looks in the working directory too.
-void removeUnread(Json& value)
+/// tinygltf does not see extensions and extras (newer ones interpret more of them than the schema checks), buffers and images.
+tinygltf::Model parseModel(const Document& document, std::string_view json)
 {
-    if (value.is_object()) {
-        value.erase("extensions");
-        value.erase("extras");
-    }
-    if (value.is_structured())
-        for (Json& child : value) removeUnread(child);
-}
-
-tinygltf::Model parseModel(const Document& document)
-{
-    Json json = document.json;
-    json.erase("buffers");
-    json.erase("images");
-    removeUnread(json);
-    const std::string text = json.dump();
+    const auto isRead = [](int depth, Json::parse_event_t event, const Json& key) {
+        return event != Json::parse_event_t::key || !(key == "extensions" || key == "extras" || (depth == 1 && (key == "buffers" || key == "images")));
+    };
+    const std::string text = Json::parse(json, isRead).dump();
     if (text.size() > 0x7fffffff) document.fail("JSON", "longer than 2 GiB");
 
     tinygltf::Model model;
@@ -148,7 +105,7 @@ tinygltf::Model parseModel(const Document& document)
     return model;
 }
 
-std::vector<std::vector<unsigned char>> readBuffers(const Document& document, Container& container)
+std::vector<std::vector<unsigned char>> readBuffers(const Document& document, const Container& container)
 {
     std::vector<std::vector<unsigned char>> buffers;
     const Json list = document.json.value("buffers", Json::array());
@@ -157,8 +114,8 @@ std::vector<std::vector<unsigned char>> readBuffers(const Document& document, Co
         if (list[i].contains("uri")) {
             buffers.push_back(readUri(document, list[i]["uri"].get<std::string>(), path + ".uri"));
         } else {
-            if (i != 0 || !container.hasBinary) document.fail(path + ".uri", "is missing, and there is no binary chunk for it");
-            buffers.push_back(std::move(container.binary));
+            if (i != 0 || !container.binary) document.fail(path + ".uri", "is missing, and there is no binary chunk for it");
+            buffers.emplace_back(container.binary->begin(), container.binary->end());
         }
         const std::uint64_t promised = list[i]["byteLength"].get<std::uint64_t>();
         if (promised > buffers.back().size())
@@ -168,42 +125,47 @@ std::vector<std::vector<unsigned char>> readBuffers(const Document& document, Co
     return buffers;
 }
 
-std::vector<unsigned char> decodeDataUri(const Document& document, std::string_view uri, const std::string& jsonPath)
+std::vector<unsigned char> decodeDataUri(const Document& document, const std::string& uri, const std::string& jsonPath)
 {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) document.fail(jsonPath, "a data URI must be base64");
-    const std::string_view text = uri.substr(comma + 1);
-    constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t digits = std::min(text.find_first_not_of(kAlphabet), text.size());
-    const std::string_view padding = text.substr(digits);
-    if (digits > 0x7ffffff0 || digits % 4 == 1 || !(padding.empty() || padding == "=" || padding == "==")) document.fail(jsonPath, "is no valid base64");
+    if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64")) document.fail(jsonPath, "a data URI must be base64");
+    std::string text = uri.substr(comma + 1);
+    for (int i = 0; i < 2 && text.ends_with('='); ++i) text.pop_back();
 
-    std::string padded(text.substr(0, digits));
-    const std::size_t missing = (4 - digits % 4) % 4;
-    padded.append(missing, '=');
-    std::vector<unsigned char> bytes(padded.size() / 4 * 3);
-    if (EVP_DecodeBlock(bytes.data(), reinterpret_cast<const unsigned char*>(padded.data()), int(padded.size())) < 0)
-        document.fail(jsonPath, "is no valid base64");
-    bytes.resize(bytes.size() - missing);
+    // tinygltf knows some media types only, stops without a word at what is no digit, and counts in int.
+    std::vector<unsigned char> bytes;
+    std::string mediaType;
+    if (text.size() < 0x7ffffff0) tinygltf::DecodeDataURI(&bytes, mediaType, "data:application/octet-stream;base64," + text, 0, false);
+    if (text.size() % 4 == 1 || bytes.size() != text.size() * 3 / 4) document.fail(jsonPath, "is no valid base64");
     return bytes;
 }
 
 std::string percentDecode(const std::string& uri)
 {
-    const auto hex = [](char c) { return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1; };
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
-            text += char(hex(uri[i + 1]) * 16 + hex(uri[i + 2]));
-            i += 2;
-        } else {
-            text += uri[i];
-        }
+        unsigned char byte = 0;
+        const char* digits = uri.data() + i + 1;
+        const bool escaped = uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+        text += escaped ? char(byte) : uri[i];
+        if (escaped) i += 2;
     }
     return text;
 }
 
 }  // namespace
+
+std::string at(const std::string& path, std::size_t index)
+{
+    return path + "[" + std::to_string(index) + "]";
+}
+
+std::string countOf(std::size_t count, const std::string& noun)
+{
+    if (count == 1) return "1 " + noun;
+    if (noun == "vertex") return std::to_string(count) + " vertices";
+    return std::to_string(count) + " " + noun + "s";
+}
 
 std::vector<unsigned char> readUri(const Document& document, const std::string& uri, const std::string& jsonPath)
 {
@@ -218,36 +180,19 @@ std::vector<unsigned char> readUri(const Document& document, const std::string& 
     }
 }
 
-std::vector<unsigned char> bufferViewBytes(const Document& document, int view)
-{
-    const tinygltf::BufferView& v = document.model.bufferViews[std::size_t(view)];
-    const auto begin = document.buffers[std::size_t(v.buffer)].begin() + std::ptrdiff_t(v.byteOffset);
-    return {begin, begin + std::ptrdiff_t(v.byteLength)};
-}
-
 Document readDocument(const std::string& path)
 {
+    const std::vector<unsigned char> file = readFile(path);
     Document document;
     document.file = path;
-    const std::vector<unsigned char> file = readFile(path);
-
-    Container container;
-    if (file.size() >= 4 && std::memcmp(file.data(), "glTF", 4) == 0) {
-        container = splitGlb(document, file);
-    } else {
-        container.json = {reinterpret_cast<const char*>(file.data()), file.size()};
-        if (file.empty()) throw InputError(path, "is empty");
-        const std::size_t first = container.json.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // a byte order mark is tolerated
-        if (first == std::string_view::npos || container.json[first] != '{') throw InputError(path, "is neither glTF JSON nor GLB");
-    }
-    document.json = parseJson(document, container.json);
-    checkSchema(document);
-    checkVersion(document);
+    const Container container = splitFile(document, file);
+    document.json = parseJson(container.json, container.json.data() == reinterpret_cast<const char*>(file.data()) ? path : path + ": JSON chunk");
+    const JsonReader root(document.json, path);
+    checkSchema(root);
+    checkVersion(root["asset"]);
     checkExtensions(document);
-    for (const Json& name : document.json.value("extensionsUsed", Json::array())) document.quantized |= name.get<std::string>() == "KHR_mesh_quantization";
     document.buffers = readBuffers(document, container);
-    document.model = parseModel(document);
-    checkReferences(document);
+    document.model = parseModel(document, container.json);
     return document;
 }
 

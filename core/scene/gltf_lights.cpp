@@ -1,4 +1,4 @@
-#include "core/scene/gltf_read.h"
+#include "core/scene/gltf_lights.h"
 
 namespace lrsm::gltf {
 namespace {
@@ -45,23 +45,18 @@ void readLights(const Document& document, Asset& asset)
 
 void readCameras(const Document& document, Asset& asset)
 {
-    const Json cameras = document.json.value("cameras", Json::array());
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        const Json& json = cameras[i];
-        const std::string type = json["type"].get<std::string>();
-        const auto lens = json.find(type);
-        if (lens == json.end()) document.fail(at("cameras", i) + "." + type, "is missing");
+    for (const tinygltf::Camera& source : document.model.cameras) {
         Camera camera;
-        camera.name = json.value("name", std::string());
-        camera.perspective = type == "perspective";
-        camera.nearPlane = (*lens)["znear"].get<float>();
+        camera.name = source.name;
+        camera.perspective = source.type == "perspective";
+        camera.nearPlane = float(camera.perspective ? source.perspective.znear : source.orthographic.znear);
         if (camera.perspective) {
-            camera.verticalFov = (*lens)["yfov"].get<float>();
-            camera.aspect = lens->value("aspectRatio", 0.0f);
+            camera.verticalFov = float(source.perspective.yfov);
+            camera.aspect = float(source.perspective.aspectRatio);
         } else {
             // A negative magnification mirrors the picture; glTF discourages it, and the size is all that is kept.
-            const float xmag = std::abs((*lens)["xmag"].get<float>()), ymag = std::abs((*lens)["ymag"].get<float>());
-            if (!(xmag > 0.0f && ymag > 0.0f)) document.fail(at("cameras", i) + ".orthographic", "xmag and ymag must not be 0");
+            const float xmag = std::abs(float(source.orthographic.xmag)), ymag = std::abs(float(source.orthographic.ymag));
+            if (!(xmag > 0.0f && ymag > 0.0f)) document.fail(at("cameras", asset.cameras.size()) + ".orthographic", "xmag and ymag must not be 0");
             camera.verticalExtent = 2.0f * ymag;
             camera.aspect = xmag / ymag;
         }

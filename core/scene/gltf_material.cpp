@@ -1,5 +1,7 @@
+#include "core/scene/gltf_material.h"
+
 #include "core/base/elementary.h"
-#include "core/scene/gltf_read.h"
+#include "core/scene/gltf_accessor.h"
 
 namespace lrsm::gltf {
 namespace {
@@ -124,12 +126,14 @@ void readImages(const Document& document, Asset& asset)
         EncodedImage image{images[i].value("name", images[i].value("uri", std::string())), {}, {}};
         if (image.name.empty() || image.name.starts_with("data:")) image.name = "image " + std::to_string(i);
         try {
-            if (images[i].contains("bufferView"))
-                image.bytes = bufferViewBytes(document, images[i]["bufferView"].get<int>());
-            else if (images[i].contains("uri"))
+            if (images[i].contains("bufferView")) {
+                const auto bytes = bufferViewBytes(document, images[i]["bufferView"].get<int>());
+                image.bytes.assign(bytes.begin(), bytes.end());
+            } else if (images[i].contains("uri")) {
                 image.bytes = readUri(document, images[i]["uri"].get<std::string>(), at("images", i) + ".uri");
-            else
+            } else {
                 document.fail(at("images", i), "has neither uri nor bufferView");
+            }
         } catch (const InputError& error) {
             image.problem = error.what();  // matters only if a triangle's material uses it
         }

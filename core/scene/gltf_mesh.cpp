@@ -1,5 +1,6 @@
+#include "core/scene/gltf_mesh.h"
+
 #include "core/scene/gltf_accessor.h"
-#include "core/scene/gltf_read.h"
 
 #include <optional>
 
@@ -101,11 +102,10 @@ std::vector<std::array<std::uint32_t, 3>> assembleTriangles(const std::vector<st
     return triangles;
 }
 
-Primitive readPrimitive(const Document& document, const tinygltf::Primitive& source, const std::string& path, std::size_t defaultMaterial)
+Primitive readPrimitive(const Document& document, const tinygltf::Primitive& source, const std::string& path, std::size_t defaultMaterial, bool quantized)
 {
     const std::size_t vertices = document.model.accessors[std::size_t(source.attributes.at("POSITION"))].count;
     const AttributeReader reader(document, source.attributes, path + ".attributes", vertices);
-    const bool quantized = document.quantized;
 
     Primitive primitive;
     primitive.material = source.material >= 0 ? source.material : int(defaultMaterial);
@@ -131,15 +131,10 @@ Primitive readPrimitive(const Document& document, const tinygltf::Primitive& sou
 
 }  // namespace
 
-std::string countOf(std::size_t count, const std::string& noun)
-{
-    if (count == 1) return "1 " + noun;
-    if (noun == "vertex") return std::to_string(count) + " vertices";
-    return std::to_string(count) + " " + noun + "s";
-}
-
 void readMeshes(const Document& document, Asset& asset)
 {
+    const std::vector<std::string>& extensions = document.model.extensionsUsed;
+    const bool quantized = std::find(extensions.begin(), extensions.end(), "KHR_mesh_quantization") != extensions.end();
     std::size_t notTriangles = 0, withoutPositions = 0;
     for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
         const tinygltf::Mesh& source = document.model.meshes[m];
@@ -153,7 +148,7 @@ void readMeshes(const Document& document, Asset& asset)
             notTriangles += !triangles;
             withoutPositions += triangles && !positions;
             if (triangles && positions)
-                mesh.primitives.push_back(readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materials.size() - 1));
+                mesh.primitives.push_back(readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materials.size() - 1, quantized));
         }
         asset.meshes.push_back(std::move(mesh));
     }

@@ -1,16 +1,18 @@
+#include "core/scene/gltf_nodes.h"
+
 #include "core/base/elementary.h"
 #include "core/scene/gltf_accessor.h"
-#include "core/scene/gltf_read.h"
+
+#include <optional>
 
 namespace lrsm::gltf {
 namespace {
 
-Property propertyNamed(const std::string& path)
+std::optional<Property> propertyNamed(std::string_view path)
 {
-    if (path == "translation") return Property::translation;
-    if (path == "rotation") return Property::rotation;
-    if (path == "scale") return Property::scale;
-    return Property::weights;
+    constexpr std::string_view kNames[] = {"translation", "rotation", "scale", "weights"};  // in the order of Property
+    const auto found = std::find(std::begin(kNames), std::end(kNames), path);
+    return found == std::end(kNames) ? std::nullopt : std::optional(Property(found - std::begin(kNames)));
 }
 
 Interpolation interpolationOf(const Document& document, const std::string& name, const std::string& path)
@@ -30,8 +32,8 @@ std::size_t widthOf(const Document& document, Property property, int node)
     return document.model.meshes[std::size_t(mesh)].primitives[0].targets.size();
 }
 
-Channel readChannel(const Document& document, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source, const std::string& animationPath,
-                    const std::string& path)
+Channel readChannel(const Document& document, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source, Property property,
+                    const std::string& animationPath, const std::string& path)
 {
     if (source.sampler < 0 || std::size_t(source.sampler) >= animation.samplers.size())
         document.fail(path + ".sampler", "points to nothing: there are " + countOf(animation.samplers.size(), "sampler"));
@@ -40,7 +42,7 @@ Channel readChannel(const Document& document, const tinygltf::Animation& animati
 
     Channel channel;
     channel.node = source.target_node;
-    channel.property = propertyNamed(source.target_path);
+    channel.property = property;
     channel.interpolation = interpolationOf(document, sampler.interpolation, samplerPath + ".interpolation");
     const std::size_t width = widthOf(document, channel.property, channel.node);
     if (width == 0) document.fail(path + ".target", "node " + std::to_string(channel.node) + " has no morph targets");
@@ -123,16 +125,31 @@ std::vector<int> parentsFirst(const std::vector<Node>& nodes, const std::vector<
 void readNodes(const Document& document, Asset& asset)
 {
     for (std::size_t i = 0; i < document.model.nodes.size(); ++i) asset.nodes.push_back(readNode(document, i));
-    for (std::size_t i = 0; i < asset.nodes.size(); ++i)
-        for (const int child : asset.nodes[i].children) asset.nodes[std::size_t(child)].parent = int(i);
-
+    for (std::size_t i = 0; i < asset.nodes.size(); ++i) {
+        for (std::size_t c = 0; c < asset.nodes[i].children.size(); ++c) {
+            const int child = asset.nodes[i].children[c];
+            int& parent = asset.nodes[std::size_t(child)].parent;
+            if (parent >= 0) document.fail(at(at("nodes", i) + ".children", c), "node " + std::to_string(child) + " already has a parent");
+            parent = int(i);
+        }
+    }
     std::vector<int> roots;
     for (std::size_t i = 0; i < asset.nodes.size(); ++i)
         if (asset.nodes[i].parent < 0) roots.push_back(int(i));
     asset.parentsFirst = parentsFirst(asset.nodes, roots);
 
-    // The scene the file names, else its first, else (a library of nodes) everything.
+    // With one parent at most, a node that no root reaches hangs on a loop.
+    std::vector<int> reached = asset.parentsFirst;
+    std::sort(reached.begin(), reached.end());
+    for (std::size_t i = 0; i < asset.nodes.size(); ++i)
+        if (i >= reached.size() || reached[i] != int(i)) document.fail(at("nodes", i), "is its own ancestor");
+
     const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
+    for (std::size_t k = 0; k < scenes.size(); ++k)
+        for (std::size_t r = 0; r < scenes[k].nodes.size(); ++r)
+            if (const int root = scenes[k].nodes[r]; asset.nodes[std::size_t(root)].parent >= 0)
+                document.fail(at(at("scenes", k) + ".nodes", r), "node " + std::to_string(root) + " is another node's child");
+    // The scene the file names, else its first, else (a library of nodes) everything.
     const int scene = document.json.contains("scene") ? document.json["scene"].get<int>() : 0;
     asset.sceneNodes = scenes.empty() ? asset.parentsFirst : parentsFirst(asset.nodes, scenes[std::size_t(scene)].nodes);
     if (scenes.size() > 1) asset.notes.push_back("scene " + std::to_string(scene) + " of " + std::to_string(scenes.size()) + " is shown");
@@ -141,11 +158,15 @@ void readNodes(const Document& document, Asset& asset)
 void readSkins(const Document& document, Asset& asset)
 {
     for (const tinygltf::Skin& source : document.model.skins) {
+        const std::string path = at("skins", asset.skins.size());
         Skin skin;
         skin.joints = source.joints;
+        if (skin.joints.empty()) document.fail(path + ".joints", "is empty");
         skin.inverseBind.assign(skin.joints.size(), DMat4(1.0));
         if (source.inverseBindMatrices >= 0) {
+            requireFormat(document, source.inverseBindMatrices, "MAT4 f", path + ".inverseBindMatrices");
             const std::vector<float> values = readFloats(document, source.inverseBindMatrices);
+            if (values.size() < 16 * skin.joints.size()) document.fail(path + ".inverseBindMatrices", "has fewer matrices than there are joints");
             for (std::size_t j = 0; j < skin.joints.size(); ++j)
                 for (std::size_t c = 0; c < 16; ++c) skin.inverseBind[j][int(c / 4)][int(c % 4)] = double(values[16 * j + c]);
         }
@@ -173,13 +194,11 @@ void readAnimations(const Document& document, Asset& asset)
         const std::string path = at("animations", a);
         Animation animation{source.name.empty() ? "animation " + std::to_string(a) : source.name, {}};
         for (std::size_t c = 0; c < source.channels.size(); ++c) {
-            const std::string& property = source.channels[c].target_path;
-            const bool known = property == "translation" || property == "rotation" || property == "scale" || property == "weights";
-            if (!known || source.channels[c].target_node < 0) {
+            const std::optional<Property> property = propertyNamed(source.channels[c].target_path);
+            if (property && source.channels[c].target_node >= 0)
+                animation.channels.push_back(readChannel(document, source, source.channels[c], *property, path, at(path + ".channels", c)));
+            else
                 ++ignored;
-                continue;
-            }
-            animation.channels.push_back(readChannel(document, source, source.channels[c], path, at(path + ".channels", c)));
         }
         asset.animations.push_back(std::move(animation));
     }

@@ -1,12 +1,11 @@
 #include "core/settings/settings_table.h"
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_reader.h"
 #include "core/settings/settings_rows.h"
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 
@@ -85,19 +84,7 @@ void applySettingsJson(Settings& settings, const Json& object, const std::string
 
 void applySettingsFile(Settings& settings, const std::string& path)
 {
-    Json object;
-    try {
-        object = Json::parse(readFile(path));
-    } catch (const Json::exception& error) {
-        // The library's text names line and column; its prefix is of no use to a reader.
-        std::string why = error.what();
-        const std::size_t place = why.find("line ");
-        why = place == std::string::npos ? "not JSON: " + why.substr(why.find("] ") + 2) : "not JSON at " + why.substr(place);
-        for (char& letter : why)
-            if (static_cast<unsigned char>(letter) < 0x20) letter = ' ';
-        throw InputError(path, why);
-    }
-    applySettingsJson(settings, object, path);
+    applySettingsJson(settings, parseJson(readFile(path), path), path);
 }
 
 }  // namespace lrsm

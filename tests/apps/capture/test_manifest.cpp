@@ -61,7 +61,7 @@ TEST_CASE("manifest: what makes no sense is one line that names the place", "[ca
         {"/format_version", 2, "m: format_version", "is not 1"},
         {"/size/0", 0, "m: size[0]", "1 .. 16384"},
         {"/size", Json::array({4}), "m: size", "2 entries"},
-        {"/scene", nullptr, "m", "lacks \"scene\""},
+        {"/scene", nullptr, "m: scene", "is missing"},
         {"/scene/complete", 1, "m: scene: complete", "true or false"},
         {"/settings/cone_count", 0, "m: settings", "cone_count"},
         {"/settings/cone_cuont", 6, "m: settings", "cone_count"},

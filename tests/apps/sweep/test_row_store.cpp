@@ -240,7 +240,8 @@ TEST_CASE("a folder has one sweep at a time; damaged lines are named; rows of an
     std::string damaged = whole;
     damaged[whole.find('\n') + 3] = '\0';
     std::ofstream(folder.file("rows.jsonl"), std::ios::binary) << damaged;
-    CHECK(refusal(folder).find("rows.jsonl:2: ") != std::string::npos);
+    CHECK(refusal(folder).find("rows.jsonl:2: is no JSON: ") != std::string::npos);
+    CHECK(refusal(folder).ends_with("; remove this line to measure its row again"));
     CHECK(textOf(folder.file("rows.jsonl")) == damaged);
 
     Measurement other = rowNumber(7);

@@ -324,10 +324,14 @@ TEST_CASE("data URIs and files with escaped names hold the same bytes", "[scene]
     folder.write("a b%c.bin", std::string_view(reinterpret_cast<const char*>(values), sizeof values));
     folder.write("$(touch x).bin", std::string_view(reinterpret_cast<const char*>(values), sizeof values));
     const auto expected = std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    CHECK(load("data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA") == expected);
+    const std::string digits = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    for (const char* mediaType : {"application/octet-stream", "model/unheard-of", ""})
+        CHECK(load("data:" + std::string(mediaType) + ";base64," + digits) == expected);
+    CHECK(load("data:;base64," + digits + "AAA=") == expected);  // longer than promised
     CHECK(load("a%20b%25c.bin") == expected);
     CHECK(load("a b%c.bin") == expected);
     CHECK(load("$(touch x).bin") == expected);  // no shell looks at names
+    for (const char* end : {"*", "A", "=A", "AA===", "AA A"}) CHECK_THROWS_AS(load("data:;base64," + digits + end), InputError);
     for (const char* bad : {"data:;base64,AAAA*AAA", "data:,plain", "http://host/a.bin", "none.bin", "a%00.bin", ".", ""}) {
         CAPTURE(bad);
         CHECK_THROWS_AS(load(bad), InputError);

@@ -56,7 +56,7 @@ const std::map<std::string, std::string> kDecisions = {
     {"validator__image__invalid_image_data.gltf", "no triangles"},
     {"validator__image__not_found.gltf", "no triangles"},
     {"validator__json__bom.gltf", "no triangles"},
-    {"validator__json__invalid_syntax.gltf", "JSON: parse error at line 1, column 2"},
+    {"validator__json__invalid_syntax.gltf", "is no JSON: line 1, column 2"},
     {"validator__lights__light__spot_invalid_angles.gltf", "lights[0].spot: innerConeAngle"},
     {"validator__lights__light__unknown_type.gltf", "lights[0].type"},
     {"validator__lights__light__valid.gltf", "no triangles"},

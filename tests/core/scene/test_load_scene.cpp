@@ -74,6 +74,7 @@ TEST_CASE("every mistake in a view file is one line that names the key", "[scene
     };
     const std::vector<Mistake> mistakes = {
         {"", "JSON"},
+        {std::string(200, '['), "is nested more than 128 deep"},
         {"[]", "must be an object"},
         {"{\"scene\": ", "JSON"},
         {"{}", "scene: is missing"},

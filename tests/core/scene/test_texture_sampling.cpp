@@ -1,5 +1,5 @@
 // What D3D guarantees of a sampler.
-#include "core/scene/brdf.h"
+#include "core/scene/texture_sampling.h"
 
 #include "catch.h"
 
