@@ -73,10 +73,7 @@ std::vector<int> countLayersKept(const Scene& scene, const Requirements& needs, 
 {
     std::vector<int> kept(scene.lights.size(), layersAsked(settings));
     if (!settings.layers.dropEmpty) return kept;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const Rsm rsm = renderRsm(scene, scene.lights[i], needs, settings.rsm);
-        kept[i] = buildLrsm(rsm, settings.layers).layers();
-    }
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) kept[i] = countLayers(renderRsm(scene, scene.lights[i], needs, settings.rsm), settings.layers);
     return kept;
 }
 
