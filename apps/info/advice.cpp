@@ -1,9 +1,7 @@
 #include "apps/info/advice.h"
 
-#include "conetrace/frame/gbuffer.h"
+#include "apps/common/memory.h"
 #include "core/settings/settings_table.h"
-#include "lrsm/rsm.h"
-#include "voxel/opacity_pyramid.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -39,14 +37,6 @@ double frameWork(const SceneAnalysis& analysis, const Settings& settings, const 
     return work + 1.6e-3 * pixels * cones * (0.8 + 0.05 * meanLayers);
 }
 
-double frameBytes(const SceneAnalysis& analysis, const Settings& settings, const std::vector<int>& layers, int width, int height)
-{
-    std::size_t bytes = predictPyramidBytes(settings.voxel) + GBuffer::predictBytes(width, height, analysis.specular);
-    for (const int count : layers)
-        bytes += Rsm::predictBytes(settings.rsm.resolution) + static_cast<std::size_t>(count) * predictLayerBytes(settings.rsm.resolution);
-    return static_cast<double>(bytes);
-}
-
 /// Collects advice, with what each change alone does to time and memory.
 class Adviser {
   public:
@@ -60,9 +50,17 @@ class Adviser {
         Settings changed = settings_;
         applySetting(changed, key + "=" + to);
         const std::vector<int> layers = layersOf(changed);
-        advice.push_back({key, from, to, why, bitsEqual,
-                          frameWork(analysis_, changed, layers, width_, height_) / frameWork(analysis_, settings_, layers_, width_, height_),
-                          frameBytes(analysis_, changed, layers, width_, height_) / frameBytes(analysis_, settings_, layers_, width_, height_)});
+        const auto bytes = [&](const Settings& of, const std::vector<int>& kept) {
+            return static_cast<double>(frameBytes(of, analysis_.needs, kept, width_, height_));
+        };
+        advice.push_back(
+            {.key = key,
+             .from = from,
+             .to = to,
+             .why = why,
+             .bitsEqual = bitsEqual,
+             .predictedTimeRatio = frameWork(analysis_, changed, layers, width_, height_) / frameWork(analysis_, settings_, layers_, width_, height_),
+             .predictedMemoryRatio = bytes(changed, layers) / bytes(settings_, layers_)});
     }
     void add(const std::string& key, int from, int to, const std::string& why) { add(key, std::to_string(from), std::to_string(to), why); }
 
@@ -99,7 +97,7 @@ double largest(const std::vector<LightAnalysis>& lights, const Value& value)
 
 void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
-    const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.merged.depth; });
+    const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.moved; });
     const double slices = largest(analysis.lights, [](const LightAnalysis& light) { return double(light.depthSlices); });
     if (settings.layers.depthLayers > 1 && slices > 1.0 && moved < kMergedDepthLimit)
         adviser.add("depth_layers", settings.layers.depthLayers, 1, brief("read through one layer, %.2g %% of the light moves in depth", 100.0 * moved));
