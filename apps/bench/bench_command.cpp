@@ -89,7 +89,7 @@ void writeSummary(const std::string& folder, const std::vector<MeasuredAxis>& ax
 
 void printAxis(const MeasuredAxis& measured)
 {
-    std::cout << "\n" << textTable(pointTable(measured)) << textTable(exponentTable(measured));
+    std::cout << "\n" << textTable(pointTable(measured));
     for (const std::string& note : measured.leftOut) std::cout << "left out: " << note << "\n";
     std::cout.flush();
 }
@@ -138,7 +138,7 @@ int runBench(const BenchArguments& options)
 
 Command addBench(CLI::App& program)
 {
-    CLI::App* parser = program.add_subcommand("bench", "How cost grows with pixels, cones, layers, lights, resolutions, triangles, threads; exponents fitted");
+    CLI::App* parser = program.add_subcommand("bench", "How cost grows with pixels, cones, layers, lights, resolutions, triangles, threads");
     const auto options = std::make_shared<BenchArguments>();
     options->size.clear();
     options->scene = "atrium";

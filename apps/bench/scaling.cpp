@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -58,8 +59,7 @@ ScalingCurve curveOf(const std::string& name, std::size_t series, const std::vec
         curve.min.push_back(repeats.min);
         curve.spread.push_back(repeats.spread);
     }
-    curve.power = fitPower(x, curve.median);
-    curve.offset = fitOffsetPower(x, curve.median);
+    curve.slope = logLogSlope(x, curve.median);
     return curve;
 }
 
@@ -77,11 +77,6 @@ std::size_t scalingSeriesIndex(const std::string& name)
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end()) throw std::logic_error("no series \"" + name + "\"");
     return static_cast<std::size_t>(at - names.begin());
-}
-
-bool isTimeSeries(const std::string& name)
-{
-    return name.ends_with("_ms");
 }
 
 std::vector<double> scalingValues(const Frame& frame)
@@ -136,6 +131,23 @@ ScalingRun runScaling(const ScalingAxis& axis, int repeat, const ScalingWatch& w
             if (watch.each) watch.each(run.samples.back());
         }
     return run;
+}
+
+std::optional<double> logLogSlope(std::span<const double> x, std::span<const double> y)
+{
+    double n = 0.0, sumX = 0.0, sumY = 0.0, sumXX = 0.0, sumXY = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!(x[i] > 0.0 && y[i] > 0.0 && std::isfinite(x[i]) && std::isfinite(y[i]))) return {};
+        const double a = std::log(x[i] / x[0]), b = std::log(y[i] / y[0]);
+        n += 1.0;
+        sumX += a;
+        sumY += b;
+        sumXX += a * a;
+        sumXY += a * b;
+    }
+    const double spread = n * sumXX - sumX * sumX;
+    if (!(spread > 0.0)) return {};
+    return (n * sumXY - sumX * sumY) / spread;
 }
 
 const ScalingCurve* ScalingResult::find(const std::string& series) const

@@ -35,8 +35,8 @@ double exponentOf(const ScalingResult& result, const std::string& series)
 {
     const ScalingCurve* curve = result.find(series);
     REQUIRE(curve);
-    REQUIRE(curve->power);
-    return curve->power->exponent;
+    REQUIRE(curve->slope);
+    return *curve->slope;
 }
 
 double area(const Scene& scene)
@@ -109,6 +109,22 @@ TEST_CASE("scaling scenes: the parts of a light bring as much as the whole, from
     Scene dark = *makeBuiltinScene("atrium");
     dark.lights.clear();
     CHECK_THROWS_AS(withLightSplit(dark, 2), InputError);
+}
+
+TEST_CASE("scaling: the slope is that of the textbook, and what has no logarithm or no second size has none", "[sweep][scaling]")
+{
+    using Values = std::vector<double>;
+    for (const double exponent : {-1.0, 0.0, 0.5, 3.0}) {
+        Values x = {3, 6, 12, 24}, y;
+        for (const double value : x) y.push_back(0.07 * std::pow(value, exponent));
+        CHECK(logLogSlope(x, y).value() == Approx(exponent).margin(1e-12));
+    }
+    // log2 y = 0, 1, 1, 3 over log2 x = 0, 1, 2, 3.
+    CHECK(logLogSlope(Values{1, 2, 4, 8}, Values{1, 2, 2, 8}).value() == Approx(0.9));
+    CHECK_FALSE(logLogSlope(Values{1, 2, 4}, Values{1, 0, 4}));
+    CHECK_FALSE(logLogSlope(Values{1, 2, 4}, Values{1, std::nan(""), 4}));
+    CHECK_FALSE(logLogSlope(Values{2, 2}, Values{1, 3}));
+    CHECK_FALSE(logLogSlope(Values{}, Values{}));
 }
 
 TEST_CASE("scaling: work grows with pixels as theory says", "[sweep][scaling]")
@@ -242,7 +258,7 @@ TEST_CASE("scaling: the frame's times and bytes are sums of its passes", "[sweep
     }
 }
 
-TEST_CASE("scaling: every axis names series that exist, and assignments go over its own base", "[sweep][scaling]")
+TEST_CASE("scaling: x grows along every axis, and assignments go over its own base", "[sweep][scaling]")
 {
     ScalingBase base = tinyBase();
     base.quick = false;
@@ -251,12 +267,7 @@ TEST_CASE("scaling: every axis names series that exist, and assignments go over 
         if (name == "triangles") continue;  // millions
         const ScalingAxis axis = makeScalingAxis(name, base);
         INFO(name);
-        CHECK(axis.expected.size() >= 2);
         CHECK_FALSE(axis.fixed.empty());
-        for (const ScalingExpectation& expected : axis.expected) {
-            CHECK_NOTHROW(scalingSeriesIndex(expected.series));
-            CHECK(expected.low <= expected.high);
-        }
         for (std::size_t i = 1; i < axis.points.size(); ++i) CHECK(axis.points[i].x > axis.points[i - 1].x);
         CHECK(axis.points.front().settings.rsm.resolution == (name == "rsm" ? 256 : 64));
     }
