@@ -106,8 +106,12 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
         const Requirements needs = analyseRequirements(scene, named.settings.force);
         auto& kept = layersKept[settingsToJson(maps).dump()];
         if (kept.empty() && !scene.lights.empty()) kept = countLayersKept(scene, needs, named.settings);
-        TunePoint point{named, double(frameBytes(named.settings, needs, kept, size.x, size.y)) * 1e-6, {}, {}, {}, trimmed};
-        points.push_back(std::move(point));
+        points.push_back({.named = named,
+                          .megabytes = double(frameBytes(named.settings, needs, kept, size.x, size.y)) * 1e-6,
+                          .probe = {},
+                          .verified = {},
+                          .skipped = {},
+                          .trimmed = trimmed});
     }
     return points;
 }
@@ -225,8 +229,14 @@ int runTune(const TuneArguments& options)
     progress.clear();
 
     // The file holds every setting, so that it means the same over any preset.
-    TuneRecord record{
-        sceneCase.name, request, result, probeSize, small.figures().noise, small.samples(), asked ? asked->figures().noise : 0.0, asked ? asked->samples() : 0};
+    const TuneRecord record{.scene = sceneCase.name,
+                            .request = request,
+                            .result = result,
+                            .probeSize = probeSize,
+                            .probeNoise = small.figures().noise,
+                            .probeSamples = small.samples(),
+                            .verifyNoise = asked ? asked->figures().noise : 0.0,
+                            .verifySamples = asked ? asked->samples() : 0};
     const std::optional<std::size_t> written = result.chosen ? result.chosen : options.nearest ? result.nearest : std::nullopt;
     const std::string text = jsonText(tuneJson(record, written));
     if (written && !options.output.empty()) writeFileWhole(options.output, std::as_bytes(std::span(text)));
