@@ -4,6 +4,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/output_folder.h"
+#include "core/report/table.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 
 namespace lrsm {
 
@@ -50,17 +52,6 @@ void appendWhole(int file, const std::string& text, const std::string& path)
     if (::fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP) refuseFile(path);
 }
 
-std::string csvField(const Json& value)
-{
-    if (value.is_null()) return "";
-    if (!value.is_string()) return value.dump();
-    const auto& text = value.get_ref<const std::string&>();
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-    return quoted + "\"";
-}
-
 std::string lineOf(const Measurement& row)
 {
     return measurementJson(row).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -72,26 +63,6 @@ std::string keyByThisVersion(const Measurement& row)
 }
 
 }  // namespace
-
-std::string csvHeader()
-{
-    std::string line;
-    const Json json = measurementJson(Measurement());
-    for (const auto& [key, unused] : json.items()) line += (line.empty() ? "" : ",") + csvField(key);
-    return line + "\r\n";
-}
-
-std::string csvLine(const Measurement& row)
-{
-    std::string line;
-    const Json json = measurementJson(row);
-    bool first = true;
-    for (const auto& [unused, value] : json.items()) {
-        line += (first ? "" : ",") + csvField(value);
-        first = false;
-    }
-    return line + "\r\n";
-}
 
 RowStore::RowStore(const std::string& folder) : folder_(folder)
 {
@@ -105,7 +76,6 @@ RowStore::RowStore(const std::string& folder) : folder_(folder)
     try {
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) throw InputError(folder, "another sweep is writing here; wait for it or choose another folder");
         read();
-        rebuildCsv();
     } catch (...) {
         ::close(file_);
         throw;
@@ -146,19 +116,6 @@ void RowStore::read()
     }
 }
 
-void RowStore::rebuildCsv() const
-{
-    std::string text = csvHeader();
-    for (const Measurement& row : rows_) text += csvLine(row);
-    const std::string path = pathIn(folder_, "sweep.csv");
-    if (fs::is_regular_file(path)) {
-        const std::vector<unsigned char> found = readFile(path);
-        if (std::equal(text.begin(), text.end(), found.begin(), found.end(), [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; }))
-            return;
-    }
-    writeFileWhole(path, std::as_bytes(std::span(text)));
-}
-
 const Measurement* RowStore::find(const std::string& key) const
 {
     const auto found = byKey_.find(key);
@@ -171,30 +128,26 @@ bool RowStore::add(const Measurement& row)
     appendWhole(file_, lineOf(row), pathIn(folder_, "rows.jsonl"));
     byKey_.emplace(row.key, rows_.size());
     rows_.push_back(row);
-
-    const std::string path = pathIn(folder_, "sweep.csv");
-    const int csv = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
-    if (csv < 0) refuseFile(path);
-    try {
-        appendWhole(csv, csvLine(row), path);
-    } catch (...) {
-        ::close(csv);
-        throw;
-    }
-    ::close(csv);
     return true;
 }
 
-void RowStore::writeJson() const
+void RowStore::writeTables() const
 {
-    std::string text = "[\n";
+    const auto write = [&](const char* name, const std::string& text) { writeFileWhole(pathIn(folder_, name), std::as_bytes(std::span(text))); };
+    ReportTable table;
+    const Json columns = measurementJson(Measurement());
+    for (const auto& [key, unused] : columns.items()) table.head.push_back(key);
+    std::string array = "[";
     for (const Measurement& row : rows_) {
+        std::vector<std::string>& cells = table.rows.emplace_back();
+        const Json json = measurementJson(row);
+        for (const auto& [unused, value] : json.items()) cells.push_back(value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump());
         std::string line = lineOf(row);
         line.pop_back();
-        text += line + (&row == &rows_.back() ? "\n" : ",\n");
+        array += (&row == &rows_.front() ? "\n" : ",\n") + line;
     }
-    text += "]\n";
-    writeFileWhole(pathIn(folder_, "sweep.json"), std::as_bytes(std::span(text)));
+    write("sweep.csv", csvTable(table, "\r\n"));
+    write("sweep.json", array + "\n]\n");
 }
 
 }  // namespace lrsm

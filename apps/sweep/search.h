@@ -2,7 +2,6 @@
 
 #include "apps/sweep/axes.h"
 #include "apps/sweep/front.h"
-#include "apps/sweep/relative.h"
 
 #include <cstdint>
 #include <functional>
