@@ -61,7 +61,7 @@ Counters countersOf(const Lrsm& lrsm)
                          {"negative_variances", static_cast<double>(lrsm.negativeVariances)}};
     for (std::size_t i = 0; i < lrsm.ranges.size(); ++i) {
         const LayerRange& range = lrsm.ranges[i];
-        const auto add = [&](const char* name, double value) { counters.push_back({"layer" + std::to_string(i) + "_" + name, value}); };
+        const auto add = [&](const char* name, double value) { counters.push_back({"layer" + std::to_string(i) + "_" + name, value, true}); };
         add("depth_min", double(range.depthMin));
         add("depth_max", double(range.depthMax));
         add("n_dot_l_min", double(range.nDotLMin));

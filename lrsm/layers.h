@@ -74,6 +74,9 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings);
 /// For checking another program's LRSM, which goes by the ranges it was told.
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& ranges, const std::vector<bool>& keep);
 
+/// Layers that buildLrsm (the first) keeps, without building them: all of `partition`, or where empty ones are dropped, those with a lit texel.
+int countLayers(const Rsm& rsm, const LayerSettings& settings);
+
 /// Makes `level` (>= 1) of all layers anew from the level below as it is stored.
 void filterLevel(Lrsm& lrsm, int level, const LayerSettings& settings);
 

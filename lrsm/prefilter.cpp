@@ -266,6 +266,24 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<
     return lrsm;
 }
 
+/// What is known of the layers before any is built.
+struct FittedLayers {
+    std::vector<LayerRange> all;
+    Classifier layersOf;
+    std::vector<TexelCounts> counts;
+    std::vector<bool> keep;
+};
+
+FittedLayers fitLayers(const Rsm& rsm, const LayerSettings& settings)
+{
+    assert(settings.depthLayers >= 1 && settings.normalLayers >= 1 && settings.overlap >= 0.0f);
+    const std::vector<LayerRange> all = partition(rsm, settings);
+    const Classifier layersOf(all, std::max(settings.normalLayers, 1));
+    FittedLayers fitted{.all = all, .layersOf = layersOf, .counts = countTexels(rsm, layersOf, all.size()), .keep = {}};
+    for (const TexelCounts& count : fitted.counts) fitted.keep.push_back(!settings.dropEmpty || count.lit > 0);
+    return fitted;
+}
+
 }  // namespace
 
 std::size_t predictLayerBytes(int rsmResolution)
@@ -276,13 +294,14 @@ std::size_t predictLayerBytes(int rsmResolution)
 
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings)
 {
-    assert(settings.depthLayers >= 1 && settings.normalLayers >= 1 && settings.overlap >= 0.0f);
-    const std::vector<LayerRange> all = partition(rsm, settings);
-    const Classifier layersOf(all, std::max(settings.normalLayers, 1));
-    const std::vector<TexelCounts> counts = countTexels(rsm, layersOf, all.size());
-    std::vector<bool> keep;
-    for (const TexelCounts& count : counts) keep.push_back(!settings.dropEmpty || count.lit > 0);
-    return buildLrsm(rsm, settings, all, keep, layersOf, counts);
+    const FittedLayers fitted = fitLayers(rsm, settings);
+    return buildLrsm(rsm, settings, fitted.all, fitted.keep, fitted.layersOf, fitted.counts);
+}
+
+int countLayers(const Rsm& rsm, const LayerSettings& settings)
+{
+    const std::vector<bool> keep = fitLayers(rsm, settings).keep;
+    return static_cast<int>(std::count(keep.begin(), keep.end(), true));
 }
 
 Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<LayerRange>& ranges, const std::vector<bool>& keep)

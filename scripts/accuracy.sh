@@ -1,5 +1,6 @@
 #!/bin/sh
-# The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots. An hour on two cores; interrupted, the same command goes on.
+# The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots (tables.md and report.html in each folder of OUT). An hour on two
+# cores; interrupted, the same command goes on.
 #   scripts/accuracy.sh [OUT]      default out/accuracy
 # Scenes: built-ins, and those in $LRSM_SCENES (default ../shared/scenes) where they exist. References are kept in OUT/references, or REFERENCES, and reused.
 set -eu
@@ -9,7 +10,7 @@ lrsm=${LRSM:-build/release/apps/lrsm}
 references=${REFERENCES:-$out/references}
 scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}" 2>/dev/null || echo none)
 views=$scenes/views
-page=docs/accuracy.md
+page=${PAGE:-docs/accuracy.md}
 
 existing() {
     for view in "$@"; do
@@ -47,9 +48,12 @@ sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget
 sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0
 sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0
 
-scripts/accuracy_tables.py $page presets "$out/points/sweep.csv"
-scripts/accuracy_tables.py $page points "$out/points/sweep.csv"
-scripts/accuracy_tables.py $page effects "$out/settings/sweep.csv"
-scripts/accuracy_tables.py $page unseen "$out/unseen/sweep.csv" "$out/seen/sweep.csv"
-scripts/plots.py front "$out/points/sweep.csv" docs/images/accuracy-front.png
-scripts/plots.py front "$out/search/sweep.csv" docs/images/accuracy-search.png
+# table FOLDER HEADING NAME [LEFT OUT]: puts the table under HEADING of FOLDER's tables.md between the lines <!-- NAME: begin --> and <!-- NAME: end --> of
+# the page.
+table() {
+    sed -n "/^## $2/,/^## /{/^|/p}" "$out/$1/tables.md" | grep -v -e "${4:-^$}" >"$out/$3.md"
+    sed -i -e "/<!-- $3: begin -->/,/<!-- $3: end -->/{//!d}" -e "/<!-- $3: begin -->/r $out/$3.md" "$page"
+}
+table points "Presets" presets
+table points "All scenes" points
+table settings "One setting" effects "| loses both |"

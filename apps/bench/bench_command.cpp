@@ -52,18 +52,33 @@ void refuseEarly(const ScalingBase& base, const std::vector<std::string>& names)
         if (std::find(scalingAxisNames().begin(), scalingAxisNames().end(), name) == scalingAxisNames().end()) makeScalingAxis(name, base);
 }
 
-/// Rows as they come, so that an interrupted run leaves what it measured.
+/// Rows as they come, so that an interrupted run leaves what it measured. A frame with passes that none had before widens the table.
 class RowFile {
   public:
-    explicit RowFile(const std::string& path) : path_(path), file_(path, std::ios::binary | std::ios::trunc) { write(benchCsvHead()); }
+    explicit RowFile(const std::string& path) : path_(path) {}
+    void add(const ScalingAxis& axis, const ScalingSample& sample)
+    {
+        std::vector<std::string> series = series_;
+        for (const std::string& name : seriesNames({sample}))
+            if (std::find(series.begin(), series.end(), name) == series.end()) series.push_back(name);
+        rows_.emplace_back(axis, sample);
+        if (series == series_) return write(benchCsvRow(axis, sample, series_));
+        series_ = std::move(series);
+        file_ = std::ofstream(path_, std::ios::binary | std::ios::trunc);
+        write(benchCsvHead(series_));
+        for (const auto& [ofAxis, row] : rows_) write(benchCsvRow(ofAxis, row, series_));
+    }
+
+  private:
     void write(const std::string& line)
     {
         if (!file_.write(line.data(), static_cast<std::streamsize>(line.size())).flush()) throw MachineError(path_, "cannot be written");
     }
 
-  private:
     std::string path_;
     std::ofstream file_;
+    std::vector<std::string> series_;
+    std::vector<std::pair<std::reference_wrapper<const ScalingAxis>, ScalingSample>> rows_;
 };
 
 /// Says how long the rest of an axis takes, by the frames so far.
@@ -89,7 +104,7 @@ void writeSummary(const std::string& folder, const std::vector<MeasuredAxis>& ax
 
 void printAxis(const MeasuredAxis& measured)
 {
-    std::cout << "\n" << textTable(pointTable(measured)) << textTable(exponentTable(measured));
+    std::cout << "\n" << textTable(pointTable(measured));
     for (const std::string& note : measured.leftOut) std::cout << "left out: " << note << "\n";
     std::cout.flush();
 }
@@ -112,7 +127,7 @@ int runBench(const BenchArguments& options)
         progress.show(name, 0.0);
         ScalingAxis axis = makeScalingAxis(name, base);
         const TimeLeft left;
-        const ScalingWatch watch = {[&](const ScalingSample& sample) { rows.write(benchCsvRow(axis, sample)); },
+        const ScalingWatch watch = {[&](const ScalingSample& sample) { rows.add(axis, sample); },
                                     [&](const std::string& what, double fraction) { progress.show(what + left.at(fraction), fraction); },
                                     [&] { return catching.asked().load(); }};
         const ScalingRun run = runScaling(axis, options.repeat, watch);
@@ -138,7 +153,7 @@ int runBench(const BenchArguments& options)
 
 Command addBench(CLI::App& program)
 {
-    CLI::App* parser = program.add_subcommand("bench", "How cost grows with pixels, cones, layers, lights, resolutions, triangles, threads; exponents fitted");
+    CLI::App* parser = program.add_subcommand("bench", "How cost grows with pixels, cones, layers, lights, resolutions, triangles, threads");
     const auto options = std::make_shared<BenchArguments>();
     options->size.clear();
     options->scene = "atrium";

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// What `lrsm bench` says of its frames: rows, exponents, plots.
+/// What `lrsm bench` says of its frames: rows, tables, plots.
 namespace lrsm {
 
 /// An axis with what was measured on it.
@@ -21,16 +21,14 @@ struct MeasuredAxis {
 nlohmann::ordered_json machineJson();
 
 /// Columns of bench.csv: axis, x, label, repeat, width, height, threads, then every series. One line a frame, newline included.
-std::string benchCsvHead();
-std::string benchCsvRow(const ScalingAxis& axis, const ScalingSample& sample);
+std::string benchCsvHead(const std::vector<std::string>& series);
+std::string benchCsvRow(const ScalingAxis& axis, const ScalingSample& sample, const std::vector<std::string>& series);
 
-/// Exponents of the series that theory speaks of: power law, with a constant part, expected.
-ReportTable exponentTable(const MeasuredAxis& measured);
-/// Median times of a frame and its largest passes, and the work, a row a point.
+/// Median times of a frame and its largest passes, and the work, a row a point; last, the power of x that each grows with.
 ReportTable pointTable(const MeasuredAxis& measured);
 
 nlohmann::ordered_json benchJson(const std::vector<MeasuredAxis>& axes, const nlohmann::ordered_json& machine, int repeat);
-/// Self-contained: one log-log plot an axis, both tables.
+/// Self-contained: one log-log plot and table an axis.
 std::string benchPage(const std::vector<MeasuredAxis>& axes, const nlohmann::ordered_json& machine, int repeat);
 
 }  // namespace lrsm

@@ -5,41 +5,17 @@
 #include "core/base/parallel.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <set>
-#include <stdexcept>
 
 namespace lrsm {
 namespace {
 
-constexpr const char* kCounters[] = {"cones", "cone_steps", "voxel_taps", "lrsm_samples", "voxels_set", "triangles_drawn", "layers_kept"};
-
-const std::vector<std::string>& measuredPasses()
+/// "voxel mips" -> "voxel_mips".
+std::string columnOf(std::string family)
 {
-    static const std::vector<std::string> names = {"voxelize", "voxel mips", "rsm", "lrsm", "gbuffer", "direct", "cones", "filter", "composite"};
-    return names;
-}
-
-constexpr std::array<const char*, 3> kColumnsOfPass = {"_cpu_ms", "_ms", "_bytes"};
-
-std::size_t passIndex(const std::string& name)
-{
-    const std::vector<std::string>& passes = measuredPasses();
-    const auto at = std::find(passes.begin(), passes.end(), passFamily(name));
-    if (at == passes.end()) throw std::logic_error("pass \"" + name + "\" has no column");
-    return static_cast<std::size_t>(at - passes.begin());
-}
-
-std::vector<std::string> makeSeriesNames()
-{
-    std::vector<std::string> names = {"frame_cpu_ms", "frame_ms"};
-    for (std::string pass : measuredPasses()) {
-        std::replace(pass.begin(), pass.end(), ' ', '_');
-        for (const char* what : kColumnsOfPass) names.push_back(pass + what);
-    }
-    for (const char* name : kCounters) names.emplace_back(name);
-    names.insert(names.end(), {"bytes", "gpu_bytes"});
-    return names;
+    std::replace(family.begin(), family.end(), ' ', '_');
+    return family;
 }
 
 ScalingSample renderPoint(const ScalingAxis& axis, std::size_t index, int repeat)
@@ -53,66 +29,52 @@ ScalingSample renderPoint(const ScalingAxis& axis, std::size_t index, int repeat
     return {index, repeat, scalingValues(renderFrame(*point.scene, axis.camera, point.settings, options))};
 }
 
-ScalingCurve curveOf(const std::string& name, std::size_t series, const std::vector<std::vector<const ScalingSample*>>& byPoint, const std::vector<double>& x)
+ScalingCurve curveOf(const std::string& name, const std::vector<std::vector<const ScalingSample*>>& byPoint, const std::vector<double>& x)
 {
     ScalingCurve curve;
     curve.series = name;
     for (const auto& samples : byPoint) {
         std::vector<double> values;
-        for (const ScalingSample* sample : samples) values.push_back(sample->values[series]);
+        for (const ScalingSample* sample : samples) values.push_back(counterSum(sample->values, name));
         const RepeatedTime repeats = summarize(std::move(values));
         curve.median.push_back(repeats.median);
         curve.min.push_back(repeats.min);
         curve.spread.push_back(repeats.spread);
     }
-    curve.power = fitPower(x, curve.median);
-    curve.offset = fitOffsetPower(x, curve.median);
+    curve.slope = logLogSlope(x, curve.median);
     return curve;
 }
 
 }  // namespace
 
-const std::vector<std::string>& scalingSeriesNames()
+Counters scalingValues(const Frame& frame)
 {
-    static const std::vector<std::string> names = makeSeriesNames();
-    return names;
-}
-
-std::size_t scalingSeriesIndex(const std::string& name)
-{
-    const auto& names = scalingSeriesNames();
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) throw std::logic_error("no series \"" + name + "\"");
-    return static_cast<std::size_t>(at - names.begin());
-}
-
-bool isTimeSeries(const std::string& name)
-{
-    return name.ends_with("_ms");
-}
-
-std::vector<double> scalingValues(const Frame& frame)
-{
-    double frameCpu = 0.0, frameWall = 0.0;
-    std::vector<std::array<double, kColumnsOfPass.size()>> passes(measuredPasses().size());
-    std::size_t bytes = 0, gpuBytes = 0;
+    Counters values = {{"frame_cpu_ms", 0.0}, {"frame_ms", 0.0}};
     for (const PassReport& pass : frame.passes) {
-        frameCpu += pass.cpuMilliseconds;
-        frameWall += pass.milliseconds;
-        std::array<double, kColumnsOfPass.size()>& sums = passes[passIndex(pass.name)];
-        sums[0] += pass.cpuMilliseconds;
-        sums[1] += pass.milliseconds;
-        sums[2] += static_cast<double>(pass.bytes);
-        if (!pass.traits.resident && pass.name == "voxelize") continue;  // its grid goes on as the pyramid's base
-        bytes += pass.bytes;
-        gpuBytes += pass.gpuBytes;
+        const std::string column = columnOf(passFamily(pass.name));
+        addTo(values, {"frame_cpu_ms", pass.cpuMilliseconds});
+        addTo(values, {"frame_ms", pass.milliseconds});
+        addTo(values, {column + "_cpu_ms", pass.cpuMilliseconds});
+        addTo(values, {column + "_ms", pass.milliseconds});
+        addTo(values, {column + "_bytes", static_cast<double>(pass.bytes)});
     }
-    std::vector<double> values = {frameCpu, frameWall};
-    for (const auto& sums : passes) values.insert(values.end(), sums.begin(), sums.end());
-    for (const char* name : kCounters) values.push_back(counterSum(frame.passes, name));
-    values.push_back(static_cast<double>(bytes));
-    values.push_back(static_cast<double>(gpuBytes));
+    for (const PassReport& pass : frame.passes)
+        for (const Counter& counter : pass.counters) addTo(values, counter);
+    for (const PassReport& pass : frame.passes) {
+        addTo(values, {"bytes", pass.traits.resident ? static_cast<double>(pass.bytes) : 0.0});
+        addTo(values, {"gpu_bytes", pass.traits.resident ? static_cast<double>(pass.gpuBytes) : 0.0});
+    }
     return values;
+}
+
+std::vector<std::string> seriesNames(const std::vector<ScalingSample>& samples)
+{
+    std::vector<std::string> names;
+    std::set<std::string> known;
+    for (const ScalingSample& sample : samples)
+        for (const Counter& value : sample.values)
+            if (known.insert(value.name).second) names.push_back(value.name);
+    return names;
 }
 
 ScalingRun runScaling(const ScalingAxis& axis, int repeat, const ScalingWatch& watch)
@@ -139,6 +101,23 @@ ScalingRun runScaling(const ScalingAxis& axis, int repeat, const ScalingWatch& w
     return run;
 }
 
+std::optional<double> logLogSlope(std::span<const double> x, std::span<const double> y)
+{
+    double n = 0.0, sumX = 0.0, sumY = 0.0, sumXX = 0.0, sumXY = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!(x[i] > 0.0 && y[i] > 0.0 && std::isfinite(x[i]) && std::isfinite(y[i]))) return {};
+        const double a = std::log(x[i] / x[0]), b = std::log(y[i] / y[0]);
+        n += 1.0;
+        sumX += a;
+        sumY += b;
+        sumXX += a * a;
+        sumXY += a * b;
+    }
+    const double spread = n * sumXX - sumX * sumX;
+    if (!(spread > 0.0)) return {};
+    return (n * sumXY - sumX * sumY) / spread;
+}
+
 const ScalingCurve* ScalingResult::find(const std::string& series) const
 {
     for (const ScalingCurve& curve : curves)
@@ -156,12 +135,11 @@ ScalingResult summarizeScaling(const ScalingAxis& axis, const std::vector<Scalin
             if (sample.point == point) own.push_back(&sample);
         if (own.empty()) continue;
         result.points.push_back(point);
-        result.x.push_back(axis.xSeries.empty() ? axis.points[point].x : own.front()->values[scalingSeriesIndex(axis.xSeries)]);
+        result.x.push_back(axis.xSeries.empty() ? axis.points[point].x : counterSum(own.front()->values, axis.xSeries));
         byPoint.push_back(std::move(own));
     }
-    const auto& names = scalingSeriesNames();
-    for (std::size_t series = 0; series < names.size(); ++series) {
-        ScalingCurve curve = curveOf(names[series], series, byPoint, result.x);
+    for (const std::string& name : seriesNames(samples)) {
+        ScalingCurve curve = curveOf(name, byPoint, result.x);
         if (std::any_of(curve.median.begin(), curve.median.end(), [](double value) { return value != 0.0; })) result.curves.push_back(std::move(curve));
     }
     return result;

@@ -1,4 +1,5 @@
-#include "apps/bench/scaling.h"
+#include "apps/bench/scaling_axes.h"
+
 #include "apps/bench/scaling_scenes.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
@@ -8,243 +9,122 @@
 namespace lrsm {
 namespace {
 
-struct AxisSize {
-    int width, height, voxels, rsm;
-};
-constexpr AxisSize kQuickSize{32, 18, 32, 64};
+constexpr std::size_t kMostTriangles = 2000000;
 
-/// One axis under construction: all points share what the axis does not change.
-class AxisMaker {
-  public:
-    AxisMaker(const ScalingBase& base, const std::string& name, const std::string& xLabel, AxisSize size) : base_(base), size_(base.quick ? kQuickSize : size)
-    {
-        axis_.name = name;
-        axis_.xLabel = xLabel;
-        axis_.camera = base.camera;
-        if (base.size) {
-            size_.width = base.size->x;
-            size_.height = base.size->y;
-        }
-        whole_ = std::make_shared<const Scene>(base.scene);
-    }
-
-    /// The point of this base; the caller changes what its axis is about.
-    ScalingPoint point(double x, const std::string& label) const
-    {
-        ScalingPoint point{x, label, whole_, base_.settings, size_.width, size_.height, base_.threads};
-        point.settings.voxel.resolution = size_.voxels;
-        point.settings.rsm.resolution = size_.rsm;
-        for (const std::string& assignment : base_.assignments) applySetting(point.settings, assignment);
-        return point;
-    }
-    void add(ScalingPoint point)
-    {
-        validate(point.settings);
-        axis_.points.push_back(std::move(point));
-    }
-    void expect(const std::string& series, double low, double high, const std::string& why) { axis_.expected.push_back({series, low, high, why}); }
-    /// x is a series of the frame, not what was asked for.
-    void measureX(const std::string& series) { axis_.xSeries = series; }
-
-    /// "atrium, 430 triangles, 320x180, ...": what stays the same; `grows` names what does not.
-    ScalingAxis finish(const std::string& grows)
-    {
-        const ScalingPoint& p = axis_.points.front();
-        axis_.fixed = base_.scene.name;
-        const auto say = [&](const std::string& what, const std::string& text) {
-            if (what != grows) axis_.fixed += ", " + text;
-        };
-        say("triangles", std::to_string(base_.scene.triangleCount()) + " triangles");
-        say("lights", std::to_string(base_.scene.lights.size()) + (base_.scene.lights.size() == 1 ? " light" : " lights"));
-        say("pixels", std::to_string(p.width) + "x" + std::to_string(p.height));
-        say("voxels", "voxels " + std::to_string(p.settings.voxel.resolution) + "^3");
-        say("rsm", "RSM " + std::to_string(p.settings.rsm.resolution) + "^2");
-        say("layers", std::to_string(p.settings.layers.depthLayers) + "x" + std::to_string(p.settings.layers.normalLayers) + " layers");
-        say("cones", std::to_string(p.settings.cones.count) + " cones");
-        return std::move(axis_);
-    }
-
-    const ScalingBase& base() const { return base_; }
-    int width() const { return size_.width; }
-    int height() const { return size_.height; }
-    /// The first three in a quick run.
-    template <class T>
-    std::vector<T> values(std::vector<T> all) const
-    {
-        if (base_.quick && all.size() > 3) all.resize(3);
-        return all;
-    }
-
-  private:
-    const ScalingBase& base_;
-    AxisSize size_;
-    std::shared_ptr<const Scene> whole_;
-    ScalingAxis axis_;
+struct AxisRecipe {
+    std::string name, xLabel;
+    int width, height, voxels, rsm;  ///< a quick run has 32x18, 32^3, 64^2
+    std::vector<int> values;         ///< a quick run has the first three ...
+    int quickDivisor;                ///< ... over this
+    /// Of a point with x = value, label = value and all else the base's, what its axis is about. False: the axis ends before it.
+    bool (*change)(ScalingPoint&, int value, const ScalingBase&);
+    std::string xSeries = {};
 };
 
-ScalingAxis pixelsAxis(const ScalingBase& base)
+bool changePixels(ScalingPoint& point, int divisor, const ScalingBase&)
 {
-    AxisMaker maker(base, "pixels", "pixels", {1280, 720, 256, 512});
-    for (int halvings = base.quick ? 2 : 4; halvings >= 0; --halvings) {
-        const int width = std::max(1, maker.width() >> halvings), height = std::max(1, maker.height() >> halvings);
-        ScalingPoint point = maker.point(double(width) * height, std::to_string(width) + "x" + std::to_string(height));
-        point.width = width;
-        point.height = height;
-        maker.add(point);
-    }
-    maker.expect("cones_cpu_ms", 1, 1, "each pixel traces the same cones");
-    maker.expect("cone_steps", 1, 1, "the same");
-    maker.expect("gbuffer_cpu_ms", 0, 1, "fragments grow, triangles do not");
-    maker.expect("filter_cpu_ms", 1, 1, "each pixel reads its 4x4 block");
-    maker.expect("frame_cpu_ms", 0, 1, "voxels and RSM do not grow");
-    return maker.finish("pixels");
+    point.width = std::max(1, point.width / divisor);
+    point.height = std::max(1, point.height / divisor);
+    point.x = double(point.width) * point.height;
+    point.label = std::to_string(point.width) + "x" + std::to_string(point.height);
+    return true;
 }
 
-ScalingAxis conesAxis(const ScalingBase& base)
+bool changeCones(ScalingPoint& point, int count, const ScalingBase&)
 {
-    AxisMaker maker(base, "cones", "diffuse cones a pixel", {160, 90, 256, 512});
-    for (const int count : maker.values(std::vector<int>{1, 2, 4, 8, 16, 32, 64})) {
-        ScalingPoint point = maker.point(count, std::to_string(count));
-        point.settings.cones.count = count;
-        maker.add(point);
-    }
-    maker.expect("cones_cpu_ms", 1, 1.5, "more cones are narrower ones");
-    maker.expect("cone_steps", 1, 1.5, "tan of the aperture falls as 1 / sqrt(cones), and a narrow cone takes as many more steps");
-    maker.expect("frame_cpu_ms", 0, 1.5, "only the cones grow");
-    return maker.finish("cones");
+    point.settings.cones.count = count;
+    return true;
 }
 
-ScalingAxis setsAxis(const ScalingBase& base)
+bool changeSets(ScalingPoint& point, int sets, const ScalingBase&)
 {
-    AxisMaker maker(base, "sets", "cone sets a pixel", {160, 90, 256, 512});
-    for (const int sets : maker.values(std::vector<int>{1, 2, 4, 8, 16})) {
-        ScalingPoint point = maker.point(sets, std::to_string(sets));
-        point.settings.cones.setsPerPixel = sets;
-        maker.add(point);
-    }
-    maker.expect("cones_cpu_ms", 1, 1, "more cones of the same aperture");
-    maker.expect("cone_steps", 1, 1, "the same");
-    maker.expect("frame_cpu_ms", 0, 1, "only the cones grow");
-    return maker.finish("sets");
+    point.settings.cones.setsPerPixel = sets;
+    return true;
 }
 
-ScalingAxis layersAxis(const ScalingBase& base)
+/// Two digits: depth and normal layers.
+bool changeLayers(ScalingPoint& point, int digits, const ScalingBase&)
 {
-    AxisMaker maker(base, "layers", "layers kept", {160, 90, 128, 1024});
-    for (const auto& [depth, normal] : maker.values(std::vector<std::pair<int, int>>{{1, 1}, {2, 1}, {2, 2}, {3, 2}, {4, 2}, {4, 3}, {4, 4}})) {
-        ScalingPoint point = maker.point(depth * normal, std::to_string(depth) + "x" + std::to_string(normal));
-        point.settings.layers.depthLayers = depth;
-        point.settings.layers.normalLayers = normal;
-        maker.add(point);
-    }
-    maker.measureX("layers_kept");
-    maker.expect("lrsm_cpu_ms", 0, 1, "each layer has its own mip chain; reading the RSM does not grow");
-    maker.expect("lrsm_bytes", 1, 1, "one texture array slice a layer");
-    maker.expect("lrsm_samples", 0, 1, "only the layers that a cone sample touches are read");
-    maker.expect("cones_cpu_ms", 0, 1, "voxel lookups do not grow");
-    maker.expect("frame_cpu_ms", 0, 1, "voxels and RSM do not grow");
-    return maker.finish("layers");
+    LayerSettings& layers = point.settings.layers;
+    layers.depthLayers = digits / 10;
+    layers.normalLayers = digits % 10;
+    point.x = layers.depthLayers * layers.normalLayers;
+    point.label = std::to_string(layers.depthLayers) + "x" + std::to_string(layers.normalLayers);
+    return true;
 }
 
-ScalingAxis lightsAxis(const ScalingBase& base)
+bool changeLights(ScalingPoint& point, int count, const ScalingBase& base)
 {
-    AxisMaker maker(base, "lights", "lights", {160, 90, 256, 512});
-    for (const int count : maker.values(std::vector<int>{1, 2, 3, 4, 6, 8})) {
-        ScalingPoint point = maker.point(count, std::to_string(count));
-        point.scene = std::make_shared<const Scene>(withLightSplit(base.scene, count));
-        maker.add(point);
-    }
-    maker.expect("rsm_cpu_ms", 1, 1, "one map a light");
-    maker.expect("lrsm_cpu_ms", 1, 1, "one set of layers a light");
-    maker.expect("lrsm_samples", 1, 1, "every cone sample asks every light");
-    maker.expect("voxel_taps", 0, 0, "one march serves all lights");
-    maker.expect("cones_cpu_ms", 0, 1, "samples grow, steps and voxel lookups do not");
-    maker.expect("frame_cpu_ms", 0, 1, "voxels and G-buffer do not grow");
-    return maker.finish("lights");
+    point.scene = std::make_shared<const Scene>(withLightSplit(base.scene, count));
+    return true;
 }
 
-ScalingAxis voxelsAxis(const ScalingBase& base)
+bool changeVoxels(ScalingPoint& point, int resolution, const ScalingBase&)
 {
-    AxisMaker maker(base, "voxels", "voxels along an edge", {160, 90, 256, 512});
-    for (const int n : base.quick ? std::vector<int>{16, 32, 64} : std::vector<int>{64, 128, 256, 512, 1024}) {
-        ScalingPoint point = maker.point(n, std::to_string(n) + "^3");
-        point.settings.voxel.resolution = n;
-        maker.add(point);
-    }
-    maker.expect("voxel_mips_cpu_ms", 2, 3, "3 for the volume, 2 for the bricks that hold a surface");
-    maker.expect("voxel_mips_bytes", 3, 3, "a dense pyramid");
-    maker.expect("voxelize_cpu_ms", 0, 3, "triangles, n^2 voxels of their surfaces, n^3 bits to clear");
-    maker.expect("voxels_set", 2, 2, "surfaces");
-    maker.expect("cone_steps", 0, 0.3, "spheres grow with distance: log n steps, which has no exponent; about 1 / log of the steps");
-    maker.expect("cones_cpu_ms", 0, 0.5, "log n steps, and more memory than caches");
-    maker.expect("frame_cpu_ms", 0, 3, "mips grow, cones hardly");
-    return maker.finish("voxels");
+    point.settings.voxel.resolution = resolution;
+    point.label += "^3";
+    return true;
 }
 
-ScalingAxis rsmAxis(const ScalingBase& base)
+bool changeRsm(ScalingPoint& point, int resolution, const ScalingBase&)
 {
-    AxisMaker maker(base, "rsm", "RSM texels along an edge", {160, 90, 128, 512});
-    for (const int n : base.quick ? std::vector<int>{32, 64, 128} : std::vector<int>{256, 512, 1024, 2048, 4096}) {
-        ScalingPoint point = maker.point(n, std::to_string(n) + "^2");
-        point.settings.rsm.resolution = n;
-        maker.add(point);
-    }
-    maker.expect("rsm_cpu_ms", 0, 2, "texels grow, triangles do not");
-    maker.expect("lrsm_cpu_ms", 2, 2, "texels; dearer ones once they are more than caches hold");
-    maker.expect("lrsm_bytes", 2, 2, "texels");
-    maker.expect("cone_steps", 0, 0, "steps know nothing of the maps");
-    maker.expect("cones_cpu_ms", 0, 0.3, "the same lookups, in more memory");
-    maker.expect("frame_cpu_ms", 0, 2, "voxels and cones do not grow");
-    return maker.finish("rsm");
+    point.settings.rsm.resolution = resolution;
+    point.label += "^2";
+    return true;
 }
 
-/// Doublings of the edges' cuts, up to about two million triangles.
-ScalingAxis trianglesAxis(const ScalingBase& base)
+bool changeTriangles(ScalingPoint& point, int doublings, const ScalingBase& base)
 {
-    constexpr std::size_t kMost = 2000000;
-    AxisMaker maker(base, "triangles", "triangles", {160, 90, 256, 512});
-    std::size_t count = base.scene.triangleCount();
-    for (int doublings = 0; doublings <= 8 && (doublings == 0 || count <= kMost); ++doublings, count *= 4) {
-        if (base.quick && doublings == 3) break;
-        ScalingPoint point = maker.point(double(count), std::to_string(count));
-        point.scene = std::make_shared<const Scene>(subdivided(base.scene, doublings));
-        maker.add(point);
-    }
-    maker.expect("voxelize_cpu_ms", 0, 1, "few large triangles cost their voxels, many small ones themselves");
-    maker.expect("rsm_cpu_ms", 0, 1, "few large triangles cost their texels, many small ones themselves");
-    maker.expect("gbuffer_cpu_ms", 0, 1, "the same with pixels");
-    maker.expect("cone_steps", 0, 0, "cones see voxels, and no triangle");
-    maker.expect("cones_cpu_ms", 0, 0, "the same");
-    maker.expect("frame_cpu_ms", 0, 1, "cones do not grow");
-    return maker.finish("triangles");
+    const std::size_t count = base.scene.triangleCount() << (2 * doublings);
+    if (doublings > 0 && count > kMostTriangles) return false;
+    point.scene = std::make_shared<const Scene>(subdivided(base.scene, doublings));
+    point.x = double(count);
+    point.label = std::to_string(count);
+    return true;
 }
 
 /// 1, 2, 4 ... and all cores.
-ScalingAxis threadsAxis(const ScalingBase& base)
+bool changeThreads(ScalingPoint& point, int threads, const ScalingBase& base)
 {
-    AxisMaker maker(base, "threads", "threads", {320, 180, 256, 512});
-    for (int n = 1; n <= base.cores; n = n < base.cores ? std::min(2 * n, base.cores) : n + 1) {
-        ScalingPoint point = maker.point(n, std::to_string(n));
-        point.threads = n;
-        maker.add(point);
-    }
-    maker.expect("frame_ms", -1, 0, "-1 where all cores are idle and every pass parallel; wall time");
-    maker.expect("cones_ms", -1, -1, "tiles are independent; wall time");
-    maker.expect("frame_cpu_ms", 0, 0, "the work is the same");
-    return maker.finish("threads");
+    if (threads / 2 >= base.cores) return false;
+    point.threads = std::min(threads, base.cores);
+    point.x = point.threads;
+    point.label = std::to_string(point.threads);
+    return true;
 }
-
-struct AxisRecipe {
-    std::string name;
-    ScalingAxis (*make)(const ScalingBase&);
-};
 
 const std::vector<AxisRecipe>& axisRecipes()
 {
-    static const std::vector<AxisRecipe> all = {{"pixels", pixelsAxis}, {"cones", conesAxis},         {"sets", setsAxis},
-                                                {"layers", layersAxis}, {"lights", lightsAxis},       {"voxels", voxelsAxis},
-                                                {"rsm", rsmAxis},       {"triangles", trianglesAxis}, {"threads", threadsAxis}};
+    static const std::vector<AxisRecipe> all = {
+        {"pixels", "pixels", 1280, 720, 256, 512, {16, 8, 4, 2, 1}, 4, changePixels},
+        {"cones", "diffuse cones a pixel", 160, 90, 256, 512, {1, 2, 4, 8, 16, 32, 64}, 1, changeCones},
+        {"sets", "cone sets a pixel", 160, 90, 256, 512, {1, 2, 4, 8, 16}, 1, changeSets},
+        {"layers", "layers kept", 160, 90, 128, 1024, {11, 21, 22, 32, 42, 43, 44}, 1, changeLayers, "layers_kept"},
+        {"lights", "lights", 160, 90, 256, 512, {1, 2, 3, 4, 6, 8}, 1, changeLights},
+        {"voxels", "voxels along an edge", 160, 90, 256, 512, {64, 128, 256, 512, 1024}, 4, changeVoxels},
+        {"rsm", "RSM texels along an edge", 160, 90, 128, 512, {256, 512, 1024, 2048, 4096}, 8, changeRsm},
+        {"triangles", "triangles", 160, 90, 256, 512, {0, 1, 2, 3, 4, 5, 6, 7, 8}, 1, changeTriangles},
+        {"threads", "threads", 320, 180, 256, 512, {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024}, 1, changeThreads},
+    };
     return all;
+}
+
+/// "atrium, 430 triangles, 320x180, ...": what stays the same.
+std::string describeFixed(const std::string& grows, const ScalingBase& base, const ScalingPoint& point)
+{
+    const Settings& s = point.settings;
+    std::string text = base.scene.name;
+    const auto say = [&](const std::string& what, const std::string& value) {
+        if (what != grows) text += ", " + value;
+    };
+    say("triangles", std::to_string(base.scene.triangleCount()) + " triangles");
+    say("lights", std::to_string(base.scene.lights.size()) + (base.scene.lights.size() == 1 ? " light" : " lights"));
+    say("pixels", std::to_string(point.width) + "x" + std::to_string(point.height));
+    say("voxels", "voxels " + std::to_string(s.voxel.resolution) + "^3");
+    say("rsm", "RSM " + std::to_string(s.rsm.resolution) + "^2");
+    say("layers", std::to_string(s.layers.depthLayers) + "x" + std::to_string(s.layers.normalLayers) + " layers");
+    say("cones", std::to_string(s.cones.count) + " cones");
+    return text;
 }
 
 }  // namespace
@@ -253,7 +133,7 @@ const std::vector<std::string>& scalingAxisNames()
 {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> list;
-        for (const AxisRecipe& entry : axisRecipes()) list.push_back(entry.name);
+        for (const AxisRecipe& recipe : axisRecipes()) list.push_back(recipe.name);
         return list;
     }();
     return names;
@@ -261,12 +141,39 @@ const std::vector<std::string>& scalingAxisNames()
 
 ScalingAxis makeScalingAxis(const std::string& name, const ScalingBase& base)
 {
-    std::string known;
-    for (const AxisRecipe& entry : axisRecipes()) {
-        if (entry.name == name) return entry.make(base);
-        known += (known.empty() ? "" : ", ") + entry.name;
+    const std::vector<AxisRecipe>& recipes = axisRecipes();
+    const auto recipe = std::find_if(recipes.begin(), recipes.end(), [&](const AxisRecipe& one) { return one.name == name; });
+    if (recipe == recipes.end()) {
+        std::string known;
+        for (const AxisRecipe& one : recipes) known += (known.empty() ? "" : ", ") + one.name;
+        throw InputError("axis \"" + name + "\"", "there is none of this name; the axes are " + known);
     }
-    throw InputError("axis \"" + name + "\"", "there is none of this name; the axes are " + known);
+    const IVec2 size = base.size.value_or(base.quick ? IVec2(32, 18) : IVec2(recipe->width, recipe->height));
+    ScalingPoint same{.x = 0.0,
+                      .label = {},
+                      .scene = std::make_shared<const Scene>(base.scene),
+                      .settings = base.settings,
+                      .width = size.x,
+                      .height = size.y,
+                      .threads = base.threads};
+    same.settings.voxel.resolution = base.quick ? 32 : recipe->voxels;
+    same.settings.rsm.resolution = base.quick ? 64 : recipe->rsm;
+    for (const std::string& assignment : base.assignments) applySetting(same.settings, assignment);
+
+    std::vector<int> values = recipe->values;
+    if (base.quick) values.resize(std::min<std::size_t>(3, values.size()));
+    ScalingAxis axis{.name = name, .xLabel = recipe->xLabel, .xSeries = recipe->xSeries, .fixed = {}, .camera = base.camera, .points = {}};
+    for (int value : values) {
+        if (base.quick) value /= recipe->quickDivisor;
+        ScalingPoint point = same;
+        point.x = value;
+        point.label = std::to_string(value);
+        if (!recipe->change(point, value, base)) break;
+        validate(point.settings);
+        axis.points.push_back(std::move(point));
+    }
+    axis.fixed = describeFixed(name, base, axis.points.front());
+    return axis;
 }
 
 }  // namespace lrsm

@@ -1,9 +1,7 @@
 #include "apps/info/advice.h"
 
-#include "conetrace/frame/gbuffer.h"
+#include "conetrace/render.h"
 #include "core/settings/settings_table.h"
-#include "lrsm/rsm.h"
-#include "voxel/opacity_pyramid.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -39,19 +37,11 @@ double frameWork(const SceneAnalysis& analysis, const Settings& settings, const 
     return work + 1.6e-3 * pixels * cones * (0.8 + 0.05 * meanLayers);
 }
 
-double frameBytes(const SceneAnalysis& analysis, const Settings& settings, const std::vector<int>& layers, int width, int height)
-{
-    std::size_t bytes = predictPyramidBytes(settings.voxel) + GBuffer::predictBytes(width, height, analysis.specular);
-    for (const int count : layers)
-        bytes += Rsm::predictBytes(settings.rsm.resolution) + static_cast<std::size_t>(count) * predictLayerBytes(settings.rsm.resolution);
-    return static_cast<double>(bytes);
-}
-
 /// Collects advice, with what each change alone does to time and memory.
 class Adviser {
   public:
-    Adviser(const SceneAnalysis& analysis, const Settings& settings, int width, int height)
-        : analysis_(analysis), settings_(settings), width_(width), height_(height), layers_(layersOf(settings))
+    Adviser(const Scene& scene, const SceneAnalysis& analysis, const Settings& settings, int width, int height)
+        : scene_(scene), analysis_(analysis), settings_(settings), width_(width), height_(height), layers_(layersOf(settings))
     {
     }
 
@@ -60,9 +50,24 @@ class Adviser {
         Settings changed = settings_;
         applySetting(changed, key + "=" + to);
         const std::vector<int> layers = layersOf(changed);
-        advice.push_back({key, from, to, why, bitsEqual,
-                          frameWork(analysis_, changed, layers, width_, height_) / frameWork(analysis_, settings_, layers_, width_, height_),
-                          frameBytes(analysis_, changed, layers, width_, height_) / frameBytes(analysis_, settings_, layers_, width_, height_)});
+        const auto bytes = [&](const Settings& of, const std::vector<int>& kept) {
+            std::vector<PassReport> counted;
+            for (const int layers : kept) {
+                PassReport& report = counted.emplace_back();
+                report.name = "lrsm " + std::to_string(counted.size() - 1);
+                report.counters = {{"layers_kept", double(layers)}};
+            }
+            const MemoryQuestion question{scene_, analysis_.needs, of, width_, height_, Unknowns::found, &counted};
+            return static_cast<double>(frameBytes(predictMemory(question), width_, height_));
+        };
+        advice.push_back(
+            {.key = key,
+             .from = from,
+             .to = to,
+             .why = why,
+             .bitsEqual = bitsEqual,
+             .predictedTimeRatio = frameWork(analysis_, changed, layers, width_, height_) / frameWork(analysis_, settings_, layers_, width_, height_),
+             .predictedMemoryRatio = bytes(changed, layers) / bytes(settings_, layers_)});
     }
     void add(const std::string& key, int from, int to, const std::string& why) { add(key, std::to_string(from), std::to_string(to), why); }
 
@@ -82,6 +87,7 @@ class Adviser {
         return layers;
     }
 
+    const Scene& scene_;
     const SceneAnalysis& analysis_;
     const Settings& settings_;
     int width_, height_;
@@ -99,7 +105,7 @@ double largest(const std::vector<LightAnalysis>& lights, const Value& value)
 
 void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
-    const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.merged.depth; });
+    const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.moved; });
     const double slices = largest(analysis.lights, [](const LightAnalysis& light) { return double(light.depthSlices); });
     if (settings.layers.depthLayers > 1 && slices > 1.0 && moved < kMergedDepthLimit)
         adviser.add("depth_layers", settings.layers.depthLayers, 1, brief("read through one layer, %.2g %% of the light moves in depth", 100.0 * moved));
@@ -135,9 +141,9 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
 
 }  // namespace
 
-std::vector<Advice> adviseSettings(const SceneAnalysis& analysis, const Settings& settings, int width, int height)
+std::vector<Advice> adviseSettings(const Scene& scene, const SceneAnalysis& analysis, const Settings& settings, int width, int height)
 {
-    Adviser adviser(analysis, settings, width, height);
+    Adviser adviser(scene, analysis, settings, width, height);
     if (settings.force.everything) adviser.add("force_everything", "true", "false", "it is for tests of the analysis", true);
     if (!settings.layers.dropEmpty) adviser.add("drop_empty", "false", "true", "layers without a lit texel send nothing", true);
     adviseLayers(analysis, settings, adviser);

@@ -1,4 +1,5 @@
-#include "apps/info/advice.h"
+#include "apps/info/analyse_scene.h"
+
 #include "conetrace/frame/cones.h"
 #include "conetrace/frame/gbuffer.h"
 #include "conetrace/frame/schedule.h"
@@ -10,36 +11,11 @@
 #include "voxel/bit_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <set>
 
 namespace lrsm {
 namespace {
-
-constexpr double kPercentiles[3] = {0.05, 0.5, 0.95};
-
-struct Weighted {
-    double value = 0.0, weight = 1.0;
-};
-
-/// The value below which `share` of the weight lies; 0 without any.
-double percentile(std::vector<Weighted>& sorted, double share)
-{
-    double total = 0.0, below = 0.0;
-    for (const Weighted& w : sorted) total += w.weight;
-    for (const Weighted& w : sorted) {
-        below += w.weight;
-        if (below >= share * total) return w.value;
-    }
-    return 0.0;
-}
-
-void percentiles(std::vector<Weighted> values, double (&out)[3])
-{
-    std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
-    for (int i = 0; i < 3; ++i) out[i] = percentile(values, kPercentiles[i]);
-}
 
 /// Metres across an LRSM texel of `lod` at a distance along the ray through its centre.
 double texelEdge(const LightProjection& projection, int resolution, int x, int y, double metresBeyondNear)
@@ -90,7 +66,7 @@ double moved(const std::vector<LayerTexel>& texel, const LayerTexel& one, double
     return std::min(1.0, depth + double(glm::length(one.normal - normal / static_cast<float>(alpha))));
 }
 
-LightAnalysis analyseLight(const Light& light, const Rsm& rsm, const Lrsm& lrsm, double finestTap, double mapTap)
+LightAnalysis analyseLight(const Light& light, const Rsm& rsm, const Lrsm& lrsm, double mapTap)
 {
     LightAnalysis out;
     out.name = light.name;
@@ -104,109 +80,49 @@ LightAnalysis analyseLight(const Light& light, const Rsm& rsm, const Lrsm& lrsm,
     out.normalSlices = static_cast<int>(normals.size());
 
     const double range = double(rsm.projection.depthRange());
-    std::vector<float> lit;
     std::vector<double> edges;
-    float nDotLMin = kInfinity, nDotLMax = 0.0f;
     const int n = rsm.texels.width;
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             const RsmTexel& texel = rsm.texels.at(x, y);
             if (!(texel.coverage > 0.0f)) continue;
             ++out.texels;
-            if (texel.radiance == Vec3(0.0f)) continue;
-            const double depth = double(rsm.depthLinear.at(x, y)) * range;
-            lit.push_back(static_cast<float>(depth));
-            edges.push_back(2.0 * texelEdge(rsm.projection, n, x, y, depth));
-            nDotLMin = std::min(nDotLMin, texel.nDotL);
-            nDotLMax = std::max(nDotLMax, texel.nDotL);
+            if (texel.radiance != Vec3(0.0f)) edges.push_back(2.0 * texelEdge(rsm.projection, n, x, y, double(rsm.depthLinear.at(x, y)) * range));
         }
-    out.litTexels = lit.size();
-    if (lit.empty()) return out;
-    out.nDotLMin = double(nDotLMin);
-    out.nDotLMax = double(nDotLMax);
-    const auto rank = [&](double share) {
-        const auto at = edges.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(edges.size() - 1));
-        std::nth_element(edges.begin(), at, edges.end());
-        return *at;
-    };
-    out.texelSize = rank(0.5);
-    out.texelSizeLargest = rank(0.95);
-    out.clusters = depthClusters(std::move(lit), partedGap(finestTap));
+    out.litTexels = edges.size();
+    if (edges.empty()) return out;
+    const auto middle = edges.begin() + static_cast<std::ptrdiff_t>((edges.size() - 1) / 2);
+    std::nth_element(edges.begin(), middle, edges.end());
+    out.texelSize = *middle;
     const int level = static_cast<int>(std::floor(log2Exact(mapTap / out.texelSize) + 0.5));
-    out.merged = mergedLight(lrsm, std::clamp(level, 0, lrsm.levels() - 1));
+    out.moved = movedByOneDepthLayer(lrsm, std::clamp(level, 0, lrsm.levels() - 1));
     return out;
 }
 
-/// Taps of the diffuse cones.
-void analyseCones(const Settings& settings, const VoxelFrame& frame, SceneAnalysis& out)
+/// Of the diffuse cones, in voxels.
+double narrowestTap(const Settings& settings, int resolution)
 {
-    const ConeSet cones = makeConeSet(settings.cones);
-    float finest = kInfinity, coarsest = 0.0f, start = kInfinity;
-    for (const ConeRing& ring : cones.rings) {
-        const MarchSchedule schedule = makeSchedule(settings.cones, ring.tanHalf, 1.7320508f * static_cast<float>(frame.resolution));
-        for (const MarchStep& step : schedule.steps) {
+    float finest = kInfinity;
+    for (const ConeRing& ring : makeConeSet(settings.cones).rings)
+        for (const MarchStep& step : makeSchedule(settings.cones, ring.tanHalf, 1.7320508f * static_cast<float>(resolution)).steps)
             finest = std::min(finest, step.tapWidth);
-            if (!step.readVoxels) continue;
-            start = std::min(start, step.middle);
-            coarsest = std::max(coarsest, step.level);
-        }
-    }
-    out.voxelSize = double(frame.voxelSize);
-    out.finestTap = double(finest) * out.voxelSize;
-    out.mapTap = kMapTapVoxels * out.voxelSize;
-    out.coneStart = double(start) * out.voxelSize;
-    out.voxelLevels = static_cast<int>(std::bit_width(static_cast<unsigned>(frame.resolution)));
-    out.voxelLevelsRead = std::min(out.voxelLevels, static_cast<int>(std::ceil(coarsest)) + 1);
+    return double(finest);
 }
 
-void analysePicture(const GBuffer& gbuffer, const Camera& camera, SceneAnalysis& out)
+double coveredFraction(const GBuffer& gbuffer)
 {
-    const double perMetre = 2.0 * tangent(0.5 * double(camera.verticalFov)) / gbuffer.height;
-    std::vector<Weighted> footprints;
-    for (std::size_t i = 0; i < gbuffer.depthLinear.texels.size(); ++i)
-        if (gbuffer.covered(i))
-            footprints.push_back({camera.perspective ? double(gbuffer.depthLinear.texels[i]) * perMetre : double(camera.verticalExtent) / gbuffer.height});
-    out.coveredFraction = static_cast<double>(footprints.size()) / static_cast<double>(gbuffer.depthLinear.texels.size());
-    percentiles(std::move(footprints), out.pixelFootprint);
-}
-
-void analyseTriangles(const Scene& scene, SceneAnalysis& out)
-{
-    std::vector<Weighted> edges;
-    for (const Mesh& mesh : scene.meshes)
-        for (const auto& t : mesh.triangles) {
-            const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-            const double area = double(glm::length(glm::cross(b - a, c - a)));
-            if (area > 0.0) edges.push_back({double(std::min({glm::length(b - a), glm::length(c - b), glm::length(a - c)})), area});
-        }
-    percentiles(std::move(edges), out.triangleEdge);
+    const std::size_t pixels = gbuffer.depthLinear.texels.size();
+    std::size_t covered = 0;
+    for (std::size_t i = 0; i < pixels; ++i) covered += gbuffer.covered(i) ? 1 : 0;
+    return static_cast<double>(covered) / static_cast<double>(pixels);
 }
 
 }  // namespace
 
-double partedGap(double tapWidth)
+double movedByOneDepthLayer(const Lrsm& lrsm, int level)
 {
-    return 3.0 * tapWidth;
-}
-
-std::vector<DepthCluster> depthClusters(std::vector<float> depths, double gap)
-{
-    std::sort(depths.begin(), depths.end());
-    std::vector<DepthCluster> clusters;
-    for (const float depth : depths) {
-        const auto at = static_cast<double>(depth);
-        if (clusters.empty() || at - clusters.back().farthest > gap) clusters.push_back({at, at, 0});
-        clusters.back().farthest = at;
-        ++clusters.back().texels;
-    }
-    return clusters;
-}
-
-MergedLight mergedLight(const Lrsm& lrsm, int level)
-{
-    MergedLight out;
     const double range = double(lrsm.projection.depthRange());
-    double all = 0.0;
+    double all = 0.0, movedLight = 0.0;
     const int n = lrsm.resolutionAt(level);
     std::vector<LayerTexel> texel(static_cast<std::size_t>(lrsm.layers()));
     for (int y = 0; y < n; ++y)
@@ -220,12 +136,10 @@ MergedLight mergedLight(const Lrsm& lrsm, int level)
                 const double edge = texelEdge(lrsm.projection, n, x, y, one.mean), tapVariance = 0.25 * edge * edge;
                 const LayerRange& bounds = lrsm.ranges[i];
                 all += one.radiance;
-                out.depth += one.radiance * moved(texel, one, tapVariance, [&](std::size_t j) { return lrsm.ranges[j].nDotLMin == bounds.nDotLMin; });
-                out.normal += one.radiance * moved(texel, one, tapVariance, [&](std::size_t j) { return lrsm.ranges[j].depthMin == bounds.depthMin; });
+                movedLight += one.radiance * moved(texel, one, tapVariance, [&](std::size_t j) { return lrsm.ranges[j].nDotLMin == bounds.nDotLMin; });
             }
         }
-    if (all > 0.0) out = {out.depth / all, out.normal / all};
-    return out;
+    return all > 0.0 ? movedLight / all : 0.0;
 }
 
 SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, int width, int height)
@@ -233,15 +147,16 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
     const FloatState state;
     checkScene(scene);
     validate(settings);
+    const VoxelFrame frame = fitVoxelFrame(scene.bounds, settings.voxel.resolution);
+    const double voxelSize = double(frame.voxelSize);
     SceneAnalysis out;
-    out.specular = needs.specular;
-    analyseCones(settings, fitVoxelFrame(scene.bounds, settings.voxel.resolution), out);
+    out.needs = needs;
+    out.finestTap = narrowestTap(settings, frame.resolution) * voxelSize;
     for (const Light& light : scene.lights) {
         const Rsm rsm = renderRsm(scene, light, needs, settings.rsm);
-        out.lights.push_back(analyseLight(light, rsm, buildLrsm(rsm, settings.layers), out.finestTap, out.mapTap));
+        out.lights.push_back(analyseLight(light, rsm, buildLrsm(rsm, settings.layers), kMapTapVoxels * voxelSize));
     }
-    analysePicture(renderGBuffer(scene, camera, needs, {width, height}), camera, out);
-    analyseTriangles(scene, out);
+    out.coveredFraction = coveredFraction(renderGBuffer(scene, camera, needs, {width, height}));
     return out;
 }
 

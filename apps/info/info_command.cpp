@@ -2,7 +2,7 @@
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/common/memory.h"
-#include "apps/info/describe_analysis.h"
+#include "apps/info/advice.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/builtin_scenes.h"
@@ -10,6 +10,7 @@
 #include "core/scene/scene_hash.h"
 #include "core/settings/settings_table.h"
 
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,6 +22,95 @@ namespace {
 struct InfoArguments : CommonOptions {
     bool list = false;
 };
+
+/// Metres as millimetres below 1 m.
+std::string length(double metres)
+{
+    char text[32];
+    if (metres < 1.0)
+        std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
+    else
+        std::snprintf(text, sizeof text, "%.3g m", metres);
+    return text;
+}
+
+std::string percent(double share)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * share);
+    return text;
+}
+
+std::string ratio(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+nlohmann::ordered_json lightJson(const LightAnalysis& light, const SceneAnalysis& analysis)
+{
+    return {{"name", light.name},
+            {"texels", light.texels},
+            {"lit_texels", light.litTexels},
+            {"texel_size", light.texelSize},
+            {"texel_over_tap", light.texelSize / analysis.finestTap},
+            {"moved_by_one_depth_layer", light.moved},
+            {"depth_slices", light.depthSlices},
+            {"normal_slices", light.normalSlices},
+            {"layers", light.layers}};
+}
+
+nlohmann::ordered_json analysisJson(const SceneAnalysis& analysis)
+{
+    nlohmann::ordered_json json = {
+        {"finest_tap", analysis.finestTap}, {"covered_fraction", analysis.coveredFraction}, {"lights", nlohmann::ordered_json::array()}};
+    for (const LightAnalysis& light : analysis.lights) json["lights"].push_back(lightJson(light, analysis));
+    return json;
+}
+
+nlohmann::ordered_json adviceJson(const std::vector<Advice>& advice)
+{
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Advice& change : advice)
+        list.push_back({{"key", change.key},
+                        {"from", change.from},
+                        {"to", change.to},
+                        {"why", change.why},
+                        {"bits_equal", change.bitsEqual},
+                        {"predicted_time_ratio", change.predictedTimeRatio},
+                        {"predicted_memory_ratio", change.predictedMemoryRatio}});
+    return list;
+}
+
+void printLight(std::ostream& out, std::size_t index, const LightAnalysis& light, const SceneAnalysis& analysis)
+{
+    out << "  light " << index << ": ";
+    if (light.litTexels == 0) {
+        out << "lights nothing: no layer, no sample\n";
+        return;
+    }
+    out << percent(static_cast<double>(light.litTexels) / static_cast<double>(light.texels)) << " of the map's surface is lit, " << light.layers
+        << " layers kept\n"
+        << "    LRSM texel " << length(light.texelSize) << ", " << ratio(light.texelSize / analysis.finestTap) << " of the finest tap\n"
+        << "    light that moves if read through one depth layer " << percent(light.moved) << "\n";
+}
+
+void printAnalysis(std::ostream& out, const SceneAnalysis& analysis)
+{
+    out << "what this scene requires, at these settings:\n  finest tap of a cone " << length(analysis.finestTap) << "\n";
+    for (std::size_t i = 0; i < analysis.lights.size(); ++i) printLight(out, i, analysis.lights[i], analysis);
+    if (analysis.lights.empty()) out << "  no lights: the cones read voxels for the opacity alone\n";
+}
+
+void printAdvice(std::ostream& out, const std::vector<Advice>& advice)
+{
+    out << "advice (docs/requirements.md says what it cost and saved where measured):\n";
+    if (advice.empty()) out << "  none: the settings fit\n";
+    for (const Advice& change : advice)
+        out << "  --set " << change.key << "=" << change.to << " (" << change.from << "): " << change.why << "; time x" << ratio(change.predictedTimeRatio)
+            << ", memory x" << ratio(change.predictedMemoryRatio) << (change.bitsEqual ? ", every bit kept" : "") << "\n";
+}
 
 int listBuiltins(bool json)
 {
@@ -42,7 +132,7 @@ int runInfo(const InfoArguments& options)
     const Scene scene = loadChosenScene(options);
     const Requirements needs = analyseRequirements(scene, settings.force);
     const SceneAnalysis analysis = analyseScene(scene, chosenCamera(scene, options), needs, settings, size.x, size.y);
-    const std::vector<Advice> advice = adviseSettings(analysis, settings, size.x, size.y);
+    const std::vector<Advice> advice = adviseSettings(scene, analysis, settings, size.x, size.y);
     const auto memory = predictMemory({scene, needs, settings, size.x, size.y});
 
     if (options.json) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <sstream>
 
 namespace lrsm {
 
@@ -28,16 +30,126 @@ void addPart(std::string& label, const std::string& part)
     label += (label.empty() ? "" : " ") + part;
 }
 
-/// False, and the reason is kept, where the combination has no meaning.
-bool isMeaningful(const NamedSettings& named, std::vector<std::string>* refused)
+/// Why the combination has no meaning; empty where it has one.
+std::string refusalOf(const Settings& settings)
 {
     try {
-        validate(named.settings);
-        return true;
+        validate(settings);
+        return "";
     } catch (const InputError& error) {
-        if (refused) refused->push_back(named.label + ": " + error.what());
-        return false;
+        return error.what();
     }
+}
+
+using Words = std::vector<std::string>;
+
+Words wordsOf(const std::string& text)
+{
+    std::istringstream stream(text);
+    Words words;
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+}
+
+/// Values worth a look, cheap to costly where that is known. Choices and flags list themselves.
+Words valuesOf(const SettingInfo& info, const Settings& base)
+{
+    static const std::map<std::string, std::string> numbers = {{"voxel_resolution", "64 128 256 512 1024"},
+                                                               {"rsm_resolution", "128 256 512 1024 2048 4096"},
+                                                               {"depth_layers", "1 2 3 4 6"},
+                                                               {"normal_layers", "1 2 3 4"},
+                                                               {"layer_overlap", "0 0.1 0.25"},
+                                                               {"depth_bias_texels", "0 0.75 2"},
+                                                               {"shadow_cone_aperture_degrees", "1 2 5"},
+                                                               {"cone_count", "1 2 3 4 6 8 9 12 16 24 32"},
+                                                               {"aperture_scale", "1.4 1 0.7 0.5 0.35 0.25"},
+                                                               {"sets_per_pixel", "1 2 4"},
+                                                               {"step", "1.5 1 0.75 0.5 0.35 0.25"},
+                                                               {"start_voxels", "1 1.5 2 3 4 6"},
+                                                               {"normal_offset_voxels", "0 0.5 1 1.5 2"},
+                                                               {"min_diameter_voxels", "2 1 0.5"},
+                                                               {"push", "0 0.5 1"},
+                                                               {"transmittance_cutoff", "0.1 0.03 0.01 0"},
+                                                               {"max_steps", "16 32 64 1024"},
+                                                               {"density_k", "1 2 4"},
+                                                               {"voxel_level_bias", "0 -1 -1.5 -2 -2.5 -3"},
+                                                               {"emitter_delay_taps", "1 1.5 2 2.5 3.5"},
+                                                               {"emitter_delay_voxels", "0 0.75 1.5"},
+                                                               {"emitter_slant_cap", "1 0.5 0.25"},
+                                                               {"v_radius_scale", "0.5 1 2"},
+                                                               {"rsm_level_bias", "1 0.5 0 -0.5 -1"},
+                                                               {"rsm_min_level", "2 1 0"},
+                                                               {"gaussian_table_size", "64 256 1024 4096"},
+                                                               {"specular_aperture_degrees", "5 10 20"}};
+    if (const auto found = numbers.find(info.key); found != numbers.end()) return wordsOf(found->second);
+    if (info.allowed.find(" | ") != std::string::npos) {
+        std::string names = info.allowed;
+        std::replace(names.begin(), names.end(), '|', ' ');
+        return wordsOf(names);
+    }
+    // A number that the list does not know: a quarter to four times the base's value, as far as its range goes.
+    Words values;
+    const auto json = settingsToJson(base).at(info.key);
+    if (!json.is_number()) return values;  // a choice of one
+    const double value = json.get<double>();
+    for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
+        const std::string text = nlohmann::json(value == 0.0 ? factor : value * factor).dump();
+        try {
+            Settings changed = base;
+            applySetting(changed, info.key + "=" + text);
+            values.push_back(text);
+        } catch (const InputError&) {
+        }
+    }
+    return values;
+}
+
+/// What a value needs beside it to have a meaning or an effect.
+Words companionsOf(const std::string& key, const std::string& value)
+{
+    static const std::string slab = "layer_overlap=0 layer_selection=touched estimator=slab", paper = "estimator=paper",
+                             centre = "estimator=paper layer_selection=centre";
+    static const std::map<std::string, std::string> byKey = {{"layer_overlap", centre},
+                                                             {"outermost_decay", centre + " layer_overlap=0.1"},
+                                                             {"shadow_cone_aperture_degrees", "shadows=cone"},
+                                                             {"opacity", paper},
+                                                             {"density_k", paper},
+                                                             {"backface", paper},
+                                                             {"v_radius_scale", paper},
+                                                             {"transmittance", slab},
+                                                             {"subtract_own_plane", slab},
+                                                             {"emitter_delay_taps", slab},
+                                                             {"emitter_delay_voxels", slab},
+                                                             {"emitter_slant_cap", slab},
+                                                             {"gaussian_table_size", "gaussian=table"},
+                                                             {"specular_aperture_degrees", "specular_aperture=fixed"}};
+    if (key == "estimator" && value == "slab") return wordsOf(slab);
+    if (key == "layer_selection") return wordsOf(value == "centre" ? paper : "layer_overlap=0");
+    const auto found = byKey.find(key);
+    return found == byKey.end() ? Words() : wordsOf(found->second);
+}
+
+/// `base` with one value and its companions; the label names what differs from the base, the value itself first.
+NamedSettings changed(const Settings& base, const std::string& assignment, const Words& companions)
+{
+    NamedSettings named{assignment, base};
+    for (const std::string& companion : companions) {
+        const Settings before = named.settings;
+        applySetting(named.settings, companion);
+        if (!(named.settings == before)) named.label += " " + companion;
+    }
+    applySetting(named.settings, assignment);
+    return named;
+}
+
+/// What a choice of rotation or filter does shows against the other's; a cheap look at both.
+void addPairs(std::vector<NamedSettings>& all, const Settings& base)
+{
+    for (const char* rotation : {"rotation=none", "rotation=azimuth", "rotation=strata"})
+        for (const char* filter : {"irradiance_filter=false", "irradiance_filter=true"}) {
+            NamedSettings named = changed(base, rotation, {filter});
+            if (differences(base, named.settings).size() == 2) all.push_back(std::move(named));
+        }
 }
 
 }  // namespace
@@ -95,9 +207,45 @@ std::vector<NamedSettings> combine(const Settings& base, const std::vector<Axis>
         all = std::move(longer);
     }
     std::vector<NamedSettings> meaningful;
-    for (NamedSettings& named : all)
-        if (isMeaningful(named, refused)) meaningful.push_back(std::move(named));
+    for (NamedSettings& named : all) {
+        const std::string refusal = refusalOf(named.settings);
+        if (refusal.empty())
+            meaningful.push_back(std::move(named));
+        else if (refused)
+            refused->push_back(named.label + ": " + refusal);
+    }
     return meaningful;
+}
+
+std::vector<NamedSettings> oneAtATime(const Settings& base, std::vector<std::string>* refused)
+{
+    std::vector<NamedSettings> all;
+    const auto isNew = [&](const Settings& settings) {
+        return !(settings == base) && std::none_of(all.begin(), all.end(), [&](const NamedSettings& seen) { return seen.settings == settings; });
+    };
+    for (const SettingInfo& info : describeSettings()) {
+        if (info.shorthand) continue;
+        bool shownAlone = false;
+        for (const std::string& value : valuesOf(info, base)) {
+            const std::string assignment = info.key + "=" + value;
+            const NamedSettings alone = changed(base, assignment, {}), together = changed(base, assignment, companionsOf(info.key, value));
+            if (alone.settings == base) continue;
+            const bool needsOthers = !(alone.settings == together.settings), meaningful = refusalOf(alone.settings).empty();
+            // Where the base does not read the setting one value shows that; the others would be the same picture again.
+            if (meaningful && isNew(alone.settings) && !(needsOthers && shownAlone)) {
+                all.push_back(alone);
+                shownAlone = true;
+            }
+            if (!needsOthers && meaningful) continue;
+            const std::string refusal = refusalOf(together.settings);
+            if (refusal.empty() && isNew(together.settings))
+                all.push_back(together);
+            else if (!refusal.empty() && refused)
+                refused->push_back(together.label + ": " + refusal);
+        }
+    }
+    addPairs(all, base);
+    return all;
 }
 
 std::vector<Axis> searchAxes()

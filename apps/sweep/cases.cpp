@@ -1,7 +1,5 @@
 #include "apps/sweep/cases.h"
 
-#include "apps/sweep/relative.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +41,7 @@ CombinedRow combinedOf(const std::vector<const Measurement*>& rows, const std::v
         if (rows[i]->bytes > 0 && base[i]->bytes > 0) bytes.push_back(static_cast<double>(rows[i]->bytes) / static_cast<double>(base[i]->bytes));
     }
     const CostError all = combineScenes(scenes);
-    return {rows, all.error, all.cost, geometricMean(bytes)};
+    return {.rows = rows, .relative = scenes, .error = all.error, .cost = all.cost, .bytes = geometricMean(bytes)};
 }
 
 const Measurement* findSamples(const CaseRows& rows, std::uint64_t samples)
@@ -99,6 +97,12 @@ std::vector<const Measurement*> timeFront(const CaseRows& rows)
 std::vector<const Measurement*> memoryFront(const CaseRows& rows)
 {
     return frontOf(rows, [](const Measurement& row) { return static_cast<double>(row.bytes); });
+}
+
+CostError relativeTo(const Measurement& row, const Measurement& baseline)
+{
+    constexpr double kLeastError = 1e-6;
+    return {row.cost / baseline.cost, std::max(row.error.net(), kLeastError) / std::max(baseline.error.net(), kLeastError)};
 }
 
 std::vector<CostError> pathTracerCurve(const CaseRows& rows)

@@ -25,12 +25,17 @@ const Measurement* findSettings(const CaseRows& rows, const Settings& settings);
 std::vector<const Measurement*> timeFront(const CaseRows& rows);
 std::vector<const Measurement*> memoryFront(const CaseRows& rows);
 
+/// Cost and net error of a row over those of `baseline`, a row of the same case (the preset `balanced`), so that scenes of any brightness and cost can be
+/// averaged. Errors below 1e-6 count as 1e-6, so that exact pictures have ratios.
+CostError relativeTo(const Measurement& row, const Measurement& baseline);
+
 /// Cost and net error of the path tracer's rows, by rising cost.
 std::vector<CostError> pathTracerCurve(const CaseRows& rows);
 
 /// One setting (or number of paths) over all cases: geometric means of its figures over those of `balanced` in the same case.
 struct CombinedRow {
     std::vector<const Measurement*> rows;  ///< one a case, in the cases' order
+    std::vector<CostError> relative;       ///< of each, over its case's `balanced`
     double error = 1.0, cost = 1.0, bytes = 1.0;
 };
 struct CombinedCases {

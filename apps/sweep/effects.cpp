@@ -1,11 +1,9 @@
 #include "apps/sweep/effects.h"
 
-#include "apps/sweep/relative.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace lrsm {
 namespace {
@@ -83,25 +81,11 @@ EffectKind kindOf(const Effect& effect, double tolerance)
     return effect.cost < -tolerance ? EffectKind::saves : EffectKind::losesBoth;
 }
 
-std::string valueText(const nlohmann::ordered_json& value)
-{
-    return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::string assignmentOf(const Step& step)
-{
-    const std::string key = step.label.substr(0, step.label.find('='));
-    const nlohmann::ordered_json settings = settingsToJson(step.row->settings);
-    const bool single = step.label.find(' ') == std::string::npos && settings.contains(key);
-    return single ? key + "=" + valueText(settings.at(key)) : "";
-}
-
 Effect effectOf(const Group& group, double unit, double tolerance)
 {
     Effect effect;
     effect.label = group.front().label;
     effect.base = group.front().around;
-    effect.assignment = assignmentOf(group.front());
     effect.cases = group.size();
     std::vector<CostError> ratios;
     std::vector<double> bytes;
@@ -130,46 +114,6 @@ bool comesBefore(const Effect& a, const Effect& b)
     case EffectKind::saves: return a.percentPerMs < b.percentPerMs;
     case EffectKind::changesNothing: return a.cost < b.cost;
     default: return a.error < b.error;
-    }
-}
-
-/// How much dearer a row is than the front's cheapest point of at most its error.
-double missOf(const Measurement& row, const std::vector<const Measurement*>& front)
-{
-    for (const Measurement* point : front)
-        if (point->error.net() <= row.error.net()) return row.cost / point->cost - 1.0;
-    return 0.0;
-}
-
-bool among(const std::vector<const Measurement*>& rows, const Measurement* row)
-{
-    return std::find(rows.begin(), rows.end(), row) != rows.end();
-}
-
-/// Counts one case's rows in, value by value.
-void addCase(const CaseRows& rows, std::vector<TriedValue>& tried)
-{
-    const auto time = timeFront(rows), memory = memoryFront(rows);
-    std::vector<std::pair<bool, bool>> seen(tried.size());
-    for (const Measurement* row : rows.settings) {
-        const double miss = missOf(*row, time);
-        const bool onTime = among(time, row), onMemory = among(memory, row);
-        const nlohmann::ordered_json settings = settingsToJson(row->settings);
-        for (auto entry = settings.begin(); entry != settings.end(); ++entry) {
-            const std::string key = entry.key(), text = valueText(entry.value());
-            auto found = std::find_if(tried.begin(), tried.end(), [&](const TriedValue& t) { return t.key == key && t.value == text; });
-            if (found == tried.end()) found = tried.insert(tried.end(), TriedValue{key, text, 0, 0, 0, miss});
-            seen.resize(tried.size());
-            auto& [time1, memory1] = seen[static_cast<std::size_t>(found - tried.begin())];
-            time1 = time1 || onTime;
-            memory1 = memory1 || onMemory;
-            ++found->rows;
-            found->closest = std::min(found->closest, miss);
-        }
-    }
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        tried[i].timeFronts += seen[i].first ? 1 : 0;
-        tried[i].memoryFronts += seen[i].second ? 1 : 0;
     }
 }
 
@@ -202,20 +146,6 @@ CalibrationUnit calibrationUnit(const std::vector<Measurement>& rows)
     const auto [min, max] = std::minmax_element(times.begin(), times.end());
     const double least = *min, most = *max;
     return {summarize(std::move(times)).median, least, most};
-}
-
-std::vector<TriedValue> triedValues(const std::vector<CaseRows>& cases)
-{
-    std::vector<TriedValue> tried;
-    for (const CaseRows& one : cases) addCase(one, tried);
-    std::vector<TriedValue> ordered;
-    const nlohmann::ordered_json keys = settingsToJson(Settings{});
-    for (auto entry = keys.begin(); entry != keys.end(); ++entry) {
-        std::vector<TriedValue> values;
-        std::copy_if(tried.begin(), tried.end(), std::back_inserter(values), [&](const TriedValue& t) { return t.key == entry.key(); });
-        if (values.size() > 1) ordered.insert(ordered.end(), values.begin(), values.end());
-    }
-    return ordered;
 }
 
 }  // namespace lrsm

@@ -20,7 +20,6 @@ enum class EffectKind {
 /// A value against its base, over the cases that have both. Changes are ratio - 1 with the ratio a geometric mean over the cases.
 struct Effect {
     std::string label, base;  ///< "cone_count=4", "balanced"; "density_k=4", "balanced estimator=paper": with what the value needs beside it
-    std::string assignment;   ///< the label's first "key=value" as TriedValue writes it; empty where several values change
     EffectKind kind = EffectKind::losesBoth;
     std::size_t cases = 0, changed = 0;           ///< measured in; where a bit of the irradiance differs
     double error = 0.0, cost = 0.0, bytes = 0.0;  ///< changes; -0.1: 10 % less
@@ -43,15 +42,5 @@ struct CalibrationUnit {
     double median = 0.0, min = 0.0, max = 0.0;
 };
 CalibrationUnit calibrationUnit(const std::vector<Measurement>& rows);
-
-/// A value of a setting that was tried beside other values of it.
-struct TriedValue {
-    std::string key, value;
-    std::size_t rows = 0;                          ///< with this value, over all cases
-    std::size_t timeFronts = 0, memoryFronts = 0;  ///< cases that have it on their front
-    double closest = 0.0;  ///< how much dearer its best row is than the front's point of at most its error: least ratio - 1 over rows and cases
-};
-/// Every value of every setting that has more than one, by the settings' order.
-std::vector<TriedValue> triedValues(const std::vector<CaseRows>& cases);
 
 }  // namespace lrsm

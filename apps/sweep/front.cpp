@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace lrsm {
@@ -51,6 +52,24 @@ std::optional<double> errorAtCost(const std::vector<CostError>& curve, double co
     while (i + 1 < curve.size() && curve[i + 1].cost <= cost) ++i;
     if (i + 1 == curve.size() || curve[i].cost == cost) return curve[i].error;
     return alongLine(cost, curve[i + 1].cost, curve[i + 1].error, curve[i].cost, curve[i].error);
+}
+
+CostError combineScenes(std::span<const CostError> scenes)
+{
+    if (scenes.empty()) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    std::vector<double> costs, errors;
+    for (const CostError& scene : scenes) {
+        costs.push_back(scene.cost);
+        errors.push_back(scene.error);
+    }
+    return {geometricMean(costs), geometricMean(errors)};
+}
+
+double geometricMean(const std::vector<double>& values)
+{
+    double sum = 0.0;
+    for (const double value : values) sum += std::log(value);
+    return values.empty() ? 1.0 : std::exp(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace lrsm

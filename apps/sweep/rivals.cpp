@@ -1,7 +1,5 @@
 #include "apps/sweep/rivals.h"
 
-#include "apps/sweep/relative.h"
-
 #include <algorithm>
 
 namespace lrsm {
@@ -11,26 +9,19 @@ EqualRow equalRow(const CaseRows& rows, const Measurement& row)
 {
     const std::vector<CostError> curve = pathTracerCurve(rows);
     const double floor = row.error.noise;
-    EqualRow equal{rows.name, row.label, row.cost, row.error.net(), row.error.net() <= floor, errorAt(curve, row.cost, floor), {}, {}, {}};
-    equal.tracerCost = costAt(curve, equal.error, floor);
+    const double error = row.error.net();
+    EqualRow equal{.name = rows.name,
+                   .row = &row,
+                   .balanced = findSettings(rows, Settings{}),
+                   .atFloor = error <= floor,
+                   .tracerError = errorAt(curve, row.cost, floor),
+                   .tracerCost = costAt(curve, error, floor),
+                   .errorRatio = {},
+                   .costRatio = {}};
     if (equal.atFloor) return equal;
-    if (equal.tracerError.reach == Reach::measured) equal.errorRatio = equal.tracerError.value / equal.error;
-    if (equal.tracerCost.reach == Reach::measured) equal.costRatio = equal.tracerCost.value / equal.cost;
+    if (equal.tracerError.reach == Reach::measured) equal.errorRatio = equal.tracerError.value / error;
+    if (equal.tracerCost.reach == Reach::measured) equal.costRatio = equal.tracerCost.value / row.cost;
     return equal;
-}
-
-TracerRow tracerRow(const CaseRows& rows, const std::vector<const Measurement*>& front, const Measurement& tracer)
-{
-    TracerRow row{rows.name, tracer.samples, tracer.cost, tracer.error.net(), tracer.error.net() <= tracer.error.noise, nullptr, 0.0, {}};
-    if (!front.empty()) row.leastError = front.back()->error.net();
-    if (row.atFloor) return row;
-    for (const Measurement* point : front)
-        if (point->error.net() <= row.error) {
-            row.rival = point;
-            row.costRatio = row.cost / point->cost;
-            break;
-        }
-    return row;
 }
 
 }  // namespace
@@ -68,11 +59,11 @@ std::vector<EqualSummary> summarizeEqual(const std::vector<EqualRow>& rows)
 {
     std::vector<EqualSummary> all;
     for (const EqualRow& first : rows) {
-        if (std::any_of(all.begin(), all.end(), [&](const EqualSummary& s) { return s.preset == first.preset; })) continue;
-        EqualSummary summary{first.preset};
+        if (std::any_of(all.begin(), all.end(), [&](const EqualSummary& s) { return s.preset == first.row->label; })) continue;
+        EqualSummary summary{.preset = first.row->label};
         std::vector<double> errors, costs;
         for (const EqualRow& row : rows) {
-            if (row.preset != first.preset) continue;
+            if (row.row->label != first.row->label) continue;
             ++summary.cases;
             if (row.errorRatio) errors.push_back(*row.errorRatio);
             if (row.costRatio) costs.push_back(*row.costRatio);
@@ -82,16 +73,6 @@ std::vector<EqualSummary> summarizeEqual(const std::vector<EqualRow>& rows)
         if (!errors.empty()) summary.errorRatio = geometricMean(errors);
         if (!costs.empty()) summary.costRatio = geometricMean(costs);
         all.push_back(summary);
-    }
-    return all;
-}
-
-std::vector<TracerRow> pathTracerAgainstFront(const std::vector<CaseRows>& cases)
-{
-    std::vector<TracerRow> all;
-    for (const CaseRows& one : cases) {
-        const auto front = timeFront(one);
-        for (const Measurement* row : one.pathTracer) all.push_back(tracerRow(one, front, *row));
     }
     return all;
 }

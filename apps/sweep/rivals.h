@@ -29,8 +29,9 @@ Looked costAt(const std::vector<CostError>& curve, double error, double floor);
 
 /// A preset against the path tracer in one case.
 struct EqualRow {
-    std::string name, preset;  ///< the case's name
-    double cost = 0.0, error = 0.0;
+    std::string name;                             ///< the case's
+    const Measurement* row = nullptr;             ///< the preset's
+    const Measurement* balanced = nullptr;        ///< of the case; nullptr: not measured
     bool atFloor = false;                         ///< the preset's own error is at or below the floor
     Looked tracerError, tracerCost;               ///< at the preset's cost; for the preset's error
     std::optional<double> errorRatio, costRatio;  ///< path tracer / preset, where both are measured (> 1: LRSM is better)
@@ -46,17 +47,5 @@ struct EqualSummary {
 };
 /// By first appearance.
 std::vector<EqualSummary> summarizeEqual(const std::vector<EqualRow>& rows);
-
-/// The path tracer at so many paths against the cheapest point of the time front that errs no more.
-struct TracerRow {
-    std::string name;
-    std::uint64_t samples = 0;
-    double cost = 0.0, error = 0.0;
-    bool atFloor = false;                ///< the path tracer's error is at or below the floor: nothing is compared
-    const Measurement* rival = nullptr;  ///< nullptr: no point of the front errs as little
-    double leastError = 0.0;             ///< of the front
-    std::optional<double> costRatio;     ///< path tracer / rival
-};
-std::vector<TracerRow> pathTracerAgainstFront(const std::vector<CaseRows>& cases);
 
 }  // namespace lrsm

@@ -4,6 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
 #include "core/base/output_folder.h"
+#include "core/report/table.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -12,7 +13,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <set>
+#include <span>
 
 namespace lrsm {
 
@@ -50,17 +51,6 @@ void appendWhole(int file, const std::string& text, const std::string& path)
     if (::fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP) refuseFile(path);
 }
 
-std::string csvField(const Json& value)
-{
-    if (value.is_null()) return "";
-    if (!value.is_string()) return value.dump();
-    const auto& text = value.get_ref<const std::string&>();
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-    return quoted + "\"";
-}
-
 std::string lineOf(const Measurement& row)
 {
     return measurementJson(row).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -72,38 +62,6 @@ std::string keyByThisVersion(const Measurement& row)
 }
 
 }  // namespace
-
-std::vector<std::string> csvColumns(const std::vector<Measurement>& rows)
-{
-    std::vector<std::string> columns;
-    std::set<std::string> known;
-    const auto add = [&](const Measurement& row) {
-        const Json flat = measurementColumns(row);
-        for (const auto& [name, unused] : flat.items())
-            if (known.insert(name).second) columns.push_back(name);
-    };
-    if (rows.empty()) add(Measurement());
-    for (const Measurement& row : rows) add(row);
-    return columns;
-}
-
-std::string csvHeader(const std::vector<std::string>& columns)
-{
-    std::string line;
-    for (const std::string& name : columns) line += (line.empty() ? "" : ",") + csvField(name);
-    return line + "\r\n";
-}
-
-std::string csvLine(const Measurement& row, const std::vector<std::string>& columns)
-{
-    std::string line;
-    const Json flat = measurementColumns(row);
-    for (const std::string& name : columns) {
-        const auto found = flat.find(name);
-        line += (&name == &columns.front() ? "" : ",") + (found == flat.end() ? "" : csvField(*found));
-    }
-    return line + "\r\n";
-}
 
 RowStore::RowStore(const std::string& folder) : folder_(folder)
 {
@@ -117,7 +75,6 @@ RowStore::RowStore(const std::string& folder) : folder_(folder)
     try {
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) throw InputError(folder, "another sweep is writing here; wait for it or choose another folder");
         read();
-        rebuildCsv();
     } catch (...) {
         ::close(file_);
         throw;
@@ -153,20 +110,6 @@ void RowStore::read()
     }
 }
 
-void RowStore::rebuildCsv()
-{
-    columns_ = csvColumns(rows_);
-    std::string text = csvHeader(columns_);
-    for (const Measurement& row : rows_) text += csvLine(row, columns_);
-    const std::string path = pathIn(folder_, "sweep.csv");
-    if (fs::is_regular_file(path)) {
-        const std::vector<unsigned char> found = readFile(path);
-        if (std::equal(text.begin(), text.end(), found.begin(), found.end(), [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; }))
-            return;
-    }
-    writeFileWhole(path, std::as_bytes(std::span(text)));
-}
-
 const Measurement* RowStore::find(const std::string& key) const
 {
     const auto found = byKey_.find(key);
@@ -179,37 +122,34 @@ bool RowStore::add(const Measurement& row)
     appendWhole(file_, lineOf(row), pathIn(folder_, "rows.jsonl"));
     byKey_.emplace(row.key, rows_.size());
     rows_.push_back(row);
-
-    // A pass that no row before had makes new columns.
-    const Json flat = measurementColumns(row);
-    const auto missing = [&](const auto& item) { return std::find(columns_.begin(), columns_.end(), item.key()) == columns_.end(); };
-    if (std::any_of(flat.items().begin(), flat.items().end(), missing)) {
-        rebuildCsv();
-        return true;
-    }
-    const std::string path = pathIn(folder_, "sweep.csv");
-    const int csv = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
-    if (csv < 0) refuseFile(path);
-    try {
-        appendWhole(csv, csvLine(row, columns_), path);
-    } catch (...) {
-        ::close(csv);
-        throw;
-    }
-    ::close(csv);
     return true;
 }
 
-void RowStore::writeJson() const
+void RowStore::writeTables() const
 {
-    std::string text = "[\n";
-    for (const Measurement& row : rows_) {
-        std::string line = lineOf(row);
+    const auto write = [&](const char* name, const std::string& text) { writeFileWhole(pathIn(folder_, name), std::as_bytes(std::span(text))); };
+    // The columns of any row; what a row does not have is empty.
+    ReportTable table;
+    std::vector<Json> flat;
+    const auto widen = [&](const Json& row) {
+        for (const auto& [key, unused] : row.items())
+            if (std::find(table.head.begin(), table.head.end(), key) == table.head.end()) table.head.push_back(key);
+    };
+    if (rows_.empty()) widen(measurementColumns(Measurement()));
+    for (const Measurement& row : rows_) widen(flat.emplace_back(measurementColumns(row)));
+    std::string array = "[";
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        std::vector<std::string>& cells = table.rows.emplace_back();
+        for (const std::string& key : table.head) {
+            const Json value = flat[i].contains(key) ? flat[i][key] : Json();
+            cells.push_back(value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump());
+        }
+        std::string line = lineOf(rows_[i]);
         line.pop_back();
-        text += line + (&row == &rows_.back() ? "\n" : ",\n");
+        array += (i == 0 ? "\n" : ",\n") + line;
     }
-    text += "]\n";
-    writeFileWhole(pathIn(folder_, "sweep.json"), std::as_bytes(std::span(text)));
+    write("sweep.csv", csvTable(table, "\r\n"));
+    write("sweep.json", array + "\n]\n");
 }
 
 }  // namespace lrsm

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// The rows of a sweep on disk: FOLDER/rows.jsonl, one JSON object a line, which only ever grows; FOLDER/sweep.csv, the same rows for a spreadsheet, and
-/// FOLDER/sweep.json, the same as one array, both made from it.
+/// FOLDER/sweep.json, the same as one array, both made from it at the end of a run.
 namespace lrsm {
 
 /// Holds the folder while it lives: a second one, in this process or another, is an InputError. A row is on the disk when `add` returns; a process that is
@@ -26,8 +26,8 @@ class RowStore {
     const Measurement* find(const std::string& key) const;
     /// Appends a row; false, and nothing is written, where its key is there already.
     bool add(const Measurement& row);
-    /// sweep.json, whole; sweep.csv grows with `add`.
-    void writeJson() const;
+    /// sweep.csv (RFC 4180, lines end with CR LF; null is an empty field; columns as measurementJson has them) and sweep.json.
+    void writeTables() const;
 
     bool droppedTornLine() const { return droppedTornLine_; }
     /// Rows whose key another version of the program made: they are kept, and never match.
@@ -35,7 +35,6 @@ class RowStore {
 
   private:
     void read();
-    void rebuildCsv();
 
     std::string folder_;
     int file_ = -1;
@@ -45,11 +44,5 @@ class RowStore {
     bool droppedTornLine_ = false;
     std::size_t otherVersions_ = 0;
 };
-
-/// RFC 4180: a header of column names, lines end with CR LF, fields with a comma, a quote or a line end are quoted; null, and what a row
-/// does not have, is an empty field. The columns are those of `measurementColumns`, of any row.
-std::vector<std::string> csvColumns(const std::vector<Measurement>& rows);
-std::string csvHeader(const std::vector<std::string>& columns);
-std::string csvLine(const Measurement& row, const std::vector<std::string>& columns);
 
 }  // namespace lrsm

@@ -24,7 +24,7 @@ class FrontSearch {
     SearchResult run()
     {
         visitStart();
-        while (mayGoOn(reservedForChecks())) {
+        while (mayGoOn()) {
             const bool explore = options_.exploreEvery > 0 && result_.visited % options_.exploreEvery == options_.exploreEvery - 1;
             std::optional<GridPosition> next = explore ? drawn() : mostPromising();
             if (!next) next = explore ? mostPromising() : drawn();
@@ -32,26 +32,23 @@ class FrontSearch {
             if (!next) break;
             visit(*next, true);
         }
-        visitPruned();
-        finish();
+        result_.front = paretoFront(values());
         return std::move(result_);
     }
 
   private:
-    bool mayGoOn(int reserved) const { return !result_.stopped && result_.visited + reserved < options_.budget; }
-
-    int reservedForChecks() const { return std::min({options_.pruneChecks, int(pruned_.size()), options_.budget / 4}); }
+    bool mayGoOn(int reserved = 0) const { return !result_.stopped && result_.visited + reserved < options_.budget; }
 
     void visitStart()
     {
         for (const NamedSettings& named : options_.start) {
-            if (!mayGoOn(0)) return;
+            if (!mayGoOn()) return;
             const bool onGrid = grid_.holds(named.settings);
             const GridPosition position = grid_.nearest(named.settings);
             if (onGrid && !seen_.insert(position).second) continue;
             visitSettings(named, onGrid ? &position : nullptr, false);
         }
-        if (isNew(grid_.origin()) && mayGoOn(0)) visit(grid_.origin(), false);
+        if (isNew(grid_.origin()) && mayGoOn()) visit(grid_.origin(), false);
         // Neighbours of all axes before the ends of any: half of a small budget must do.
         const auto move = [&](std::size_t axis, int value) {
             GridPosition position = grid_.origin();
@@ -64,23 +61,17 @@ class FrontSearch {
             for (const int end : {0, grid_.valueCount(axis) - 1}) move(axis, end);
     }
 
-    /// Inside the grid, with a meaning, not visited, and not to be pruned: bounds only ever tighten, so pruned stays pruned.
+    /// Inside the grid, with a meaning, and not visited.
     bool isNew(const GridPosition& position)
     {
         for (std::size_t axis = 0; axis < position.size(); ++axis)
             if (position[axis] < 0 || position[axis] >= grid_.valueCount(axis)) return false;
-        if (seen_.contains(position) || pruned_.contains(position)) return false;
+        if (seen_.contains(position)) return false;
         if (!grid_.at(position)) {
             ++result_.refused;
             seen_.insert(position);
             return false;
         }
-        const CostError bound = lowerBounds(onGrid_, position, options_.slack, options_.costSlack);
-        for (const SearchPoint& point : result_.points)
-            if (point.value.cost <= bound.cost && point.value.error <= bound.error) {
-                pruned_.insert(position);
-                return false;
-            }
         return true;
     }
 
@@ -206,45 +197,13 @@ class FrontSearch {
         return {};
     }
 
-    void visitPruned()
-    {
-        std::vector<GridPosition> left(pruned_.begin(), pruned_.end());
-        while (!left.empty() && result_.checked < options_.pruneChecks && mayGoOn(0)) {
-            const std::size_t chosen = std::size_t(random_() % left.size());
-            const std::size_t before = result_.points.size();
-            const int visitedBefore = result_.visited;
-            visit(left[chosen], false);
-            if (result_.visited > visitedBefore) {
-                ++result_.checked;
-                pruned_.erase(left[chosen]);
-            }
-            for (std::size_t i = before; i < result_.points.size(); ++i) checks_.insert(i);
-            left.erase(left.begin() + std::ptrdiff_t(chosen));
-        }
-    }
-
-    void finish()
-    {
-        result_.pruned = int(pruned_.size());
-        result_.front = paretoFront(values());
-        for (const std::size_t index : result_.front) result_.missed += checks_.contains(index) ? 1 : 0;
-        for (const GridPoint& coarse : onGrid_)
-            for (const GridPoint& fine : onGrid_) {
-                if (&coarse == &fine || !nowhereFiner(coarse.position, fine.position)) continue;
-                ++result_.pairs;
-                result_.violations += fine.value.error * (1.0 - options_.slack) > coarse.value.error ? 1 : 0;
-                result_.costViolations += coarse.value.cost * (1.0 - options_.costSlack) > fine.value.cost ? 1 : 0;
-            }
-    }
-
     Settings base_;
     const SearchOptions& options_;
     SettingsGrid grid_;
     std::mt19937_64 random_;
     SearchResult result_;
     std::vector<GridPoint> onGrid_;
-    std::set<GridPosition> seen_, pruned_;
-    std::set<std::size_t> checks_;  ///< points that the check of the pruning brought
+    std::set<GridPosition> seen_;
 };
 
 void requireOption(bool holds, const std::string& what, const std::string& why)
@@ -256,12 +215,9 @@ void requireOption(bool holds, const std::string& what, const std::string& why)
 
 SearchResult runFrontSearch(const Settings& base, const std::vector<Axis>& axes, const SearchOptions& options)
 {
-    const auto isFraction = [](double value) { return value >= 0.0 && value <= 1.0; };
     requireOption(options.budget >= 1, "budget " + std::to_string(options.budget), "must be 1 or more settings");
-    requireOption(isFraction(options.slack) && isFraction(options.costSlack), "slack", "must be in [0, 1]");
     requireOption(options.abandonMargin > 1.0, "abandon margin", "must be above 1");
     requireOption(options.exploreEvery == 0 || options.exploreEvery >= 2, "explore every", "must be 0 or 2 and more");
-    requireOption(options.pruneChecks >= 0, "prune checks", "must be 0 or more");
     requireOption(options.sceneCount >= 1, "scenes", "must be 1 or more");
     requireOption(bool(options.evaluate), "evaluate", "must be set");
     return FrontSearch(base, axes, options).run();
@@ -270,11 +226,8 @@ SearchResult runFrontSearch(const Settings& base, const std::vector<Axis>& axes,
 std::string describeSearch(const SearchResult& result)
 {
     std::ostringstream out;
-    out << result.visited << " settings visited, " << result.abandoned << " of them abandoned after some scenes; " << result.pruned
-        << " more came up and were pruned, " << result.refused << " refused. Of " << result.checked << " pruned settings visited anyway, " << result.missed
-        << (result.missed == 1 ? " is" : " are") << " on the front of " << result.front.size() << " points. Of " << result.pairs
-        << " visited pairs of a coarser and a finer setting, " << result.violations << " break the error's slack and " << result.costViolations
-        << " the cost's.";
+    out << result.visited << " settings visited, " << result.abandoned << " of them abandoned after some scenes; " << result.refused << " refused. "
+        << result.front.size() << " of " << result.points.size() << " points are on the front.";
     if (result.exhausted) out << " Nothing was left to visit.";
     if (result.stopped) out << " Stopped before the budget was spent.";
     return out.str();

@@ -32,13 +32,6 @@ int distance(const GridPosition& a, const GridPosition& b)
 
 }  // namespace
 
-bool nowhereFiner(const GridPosition& a, const GridPosition& b)
-{
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if (a[i] > b[i]) return false;
-    return true;
-}
-
 SettingsGrid::SettingsGrid(const Settings& base, std::vector<Axis> axes) : base_(base), axes_(std::move(axes))
 {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -107,16 +100,6 @@ bool SettingsGrid::advance(GridPosition& position) const
         position[i] = 0;
     }
     return false;
-}
-
-CostError lowerBounds(const std::vector<GridPoint>& points, const GridPosition& position, double slack, double costSlack)
-{
-    CostError bound;
-    for (const GridPoint& point : points) {
-        if (nowhereFiner(point.position, position)) bound.cost = std::max(bound.cost, point.value.cost * (1.0 - costSlack));
-        if (nowhereFiner(position, point.position)) bound.error = std::max(bound.error, point.value.error * (1.0 - slack));
-    }
-    return bound;
 }
 
 StepEffects::StepEffects(const SettingsGrid& grid, const std::vector<GridPoint>& points)

@@ -8,14 +8,11 @@
 #include <string>
 #include <vector>
 
-/// The grid that the front search walks on, its partial order, and what is known of a point before it is rendered.
+/// The grid that the front search walks on, and what is predicted of a point before it is rendered.
 namespace lrsm {
 
 /// Index of the value on each axis.
 using GridPosition = std::vector<int>;
-
-/// At most as fine on every axis.
-bool nowhereFiner(const GridPosition& a, const GridPosition& b);
 
 class SettingsGrid {
   public:
@@ -50,9 +47,6 @@ struct GridPoint {
     GridPosition position;
     CostError value;
 };
-
-/// Cost and error that an unvisited setting cannot be below, as far as monotonicity holds; 0 where nothing is known.
-CostError lowerBounds(const std::vector<GridPoint>& points, const GridPosition& position, double slack, double costSlack);
 
 /// The mean effect of each axis step, in logarithms, from visited points that differ on one axis alone.
 class StepEffects {

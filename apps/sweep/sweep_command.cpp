@@ -168,9 +168,10 @@ void printFronts(const std::vector<Measurement>& rows)
 
 void finishFolder(const RowStore& store, const std::string& folder)
 {
-    store.writeJson();
-    const std::string page = sweepReportHtml(store.rows(), folder);
-    writeFileWhole((fs::path(folder) / "report.html").string(), std::as_bytes(std::span(page)));
+    store.writeTables();
+    const auto write = [&](const char* name, const std::string& text) { writeFileWhole((fs::path(folder) / name).string(), std::as_bytes(std::span(text))); };
+    write("report.html", sweepReportHtml(store.rows(), folder));
+    write("tables.md", sweepTablesMarkdown(store.rows()));
 }
 
 void sayWhatWasFound(const RowStore& store, const SweepArguments& options)
@@ -260,7 +261,7 @@ int runSweep(const SweepArguments& options)
     } else if (!options.quiet) {
         printFronts(store.rows());
         std::cout << options.output << ": " << measured << " rows measured, " << found << " found, " << skipped
-                  << " skipped; rows.jsonl, sweep.csv, sweep.json, report.html, thumbnails\n";
+                  << " skipped; rows.jsonl, sweep.csv, sweep.json, report.html, tables.md, thumbnails\n";
     }
     return 0;
 }
@@ -289,7 +290,7 @@ Command addSweep(CLI::App& program)
     parser->add_option("--budget", options->budget, "settings that the search visits")->capture_default_str();
     parser->add_option("--seed", options->seed, "of the search's random choices")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; settings that need more are skipped");
-    parser->add_flag("--report-only", options->reportOnly, "make report.html, sweep.csv and sweep.json again from the rows");
+    parser->add_flag("--report-only", options->reportOnly, "make report.html, tables.md, sweep.csv and sweep.json again from the rows");
     parser->footer("The presets are measured in any case. See docs/file-formats.md for the columns.");
     return {parser, [options] { return runSweep(*options); }};
 }

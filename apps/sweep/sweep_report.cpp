@@ -47,57 +47,51 @@ std::string combinedHtml(const CombinedCases& all, const SweepPictures& pictures
     return headingHtml("All scenes") +
            paragraphHtml("Geometric means over " + names + " of each figure over that of balanced in the same scene; " +
                          countOf(all.settings.size(), "setting") + " measured on all of them.") +
-           combinedCharts(all, pictures) + foldedHtml("The front in numbers", tableHtml(combinedFrontTable(all)));
+           combinedCharts(all, pictures) + foldedHtml("In numbers", tableHtml(combinedTable(all)));
 }
 
-std::string effectsHtml(const std::vector<CaseRows>& cases, double unit, double noise)
+/// Less than twice what the clock makes of equal work is no difference of time.
+double toleranceOf(const std::vector<CaseRows>& cases)
 {
-    // Less than twice what the clock makes of equal work is no difference.
-    const double tolerance = std::max(0.01, 2.0 * noise);
+    return std::max(0.01, 2.0 * costNoise(cases));
+}
+
+std::string effectsHtml(const std::vector<CaseRows>& cases, double unit)
+{
+    const double tolerance = toleranceOf(cases);
     const std::vector<Effect> effects = effectsOf(cases, unit, tolerance);
-    const std::vector<TriedValue> tried = triedValues(cases);
-    const ReportTable changing = effectsTable(effects), nothing = nothingTable(effects), never = neverTable(tried, effects);
-    std::string html;
-    if (!effects.empty())
-        html = headingHtml("One setting at a time") +
-               paragraphHtml(
-                   "Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change "
-                   "of processor time "
-                   "(mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved is paid "
-                   "with (saves time, "
-                   "cheapest first). Coloured rows lose in both and save no memory. Changes of time below " +
-                   percentText(tolerance) + " count as none.") +
-               foldedHtml(countOf(changing.rows.size(), "value") + ", sorted by what a millisecond buys", tableHtml(changing)) +
-               (nothing.rows.empty() ? ""
-                                     : foldedHtml(countOf(nothing.rows.size(), "value") + (nothing.rows.size() == 1 ? " changes" : " change") +
-                                                      " nothing: not one bit of the irradiance, in any scene",
-                                                  tableHtml(nothing)));
-    if (!never.rows.empty())
-        html += foldedHtml(countOf(never.rows.size(), "value") + " never on any front, neither of time nor of memory",
-                           paragraphHtml("The closest miss: how much dearer the value's best row is than the front's cheapest point of at most its error. "
-                                         "Values that change no bit miss "
-                                         "by the clock's noise alone.") +
-                               tableHtml(never));
-    return html;
+    if (effects.empty()) return {};
+    const ReportTable changing = effectsTable(effects), nothing = nothingTable(effects);
+    return headingHtml("One setting at a time") +
+           paragraphHtml(
+               "Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change "
+               "of processor time "
+               "(mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved is paid "
+               "with (saves time, "
+               "cheapest first). Coloured rows lose in both and save no memory. Changes of time below " +
+               percentText(tolerance) + " count as none.") +
+           foldedHtml(countOf(changing.rows.size(), "value") + ", sorted by what a millisecond buys", tableHtml(changing)) +
+           (nothing.rows.empty() ? ""
+                                 : foldedHtml(countOf(nothing.rows.size(), "value") + (nothing.rows.size() == 1 ? " changes" : " change") +
+                                                  " nothing: not one bit of the irradiance, in any scene",
+                                              tableHtml(nothing)));
 }
 
 std::string rivalsHtml(const std::vector<CaseRows>& cases)
 {
     const std::vector<EqualRow> presets = presetsAgainstPathTracer(cases);
-    const ReportTable equal = equalTable(presets), tracer = tracerTable(pathTracerAgainstFront(cases));
-    if (equal.rows.empty() && tracer.rows.empty()) return {};
-    std::string html = headingHtml("Equal time and equal error: the path tracer");
-    html += paragraphHtml(
-        "The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between its "
-        "measured points in "
-        "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
-        "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no ratio is "
-        "given.");
-    if (!equal.rows.empty())
-        html += tableHtml(equalSummaryTable(summarizeEqual(presets))) +
-                foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(equal), cases.size() == 1);
-    if (!tracer.rows.empty()) html += foldedHtml("The path tracer against the cheapest point of each scene's front that errs no more", tableHtml(tracer));
-    return html;
+    if (presets.empty()) return {};
+    return headingHtml("Equal time and equal error: the path tracer") +
+           paragraphHtml(
+               "The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between "
+               "its "
+               "measured points in "
+               "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
+               "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no "
+               "ratio is "
+               "given.") +
+           tableHtml(equalSummaryTable(summarizeEqual(presets))) +
+           foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(presetsTable(presets)), cases.size() == 1);
 }
 
 std::string caseHtml(const CaseRows& rows, const SweepPictures& pictures, const std::string& timeUnit)
@@ -120,10 +114,21 @@ std::string sweepReportHtml(const std::vector<Measurement>& rows, const std::str
     const std::string timeUnit = "time, calibration frames (" + shortNumber(unit.median) + " ms here)";
 
     std::string body = cases.empty() ? "" : tableHtml(casesTable(cases));
-    body += picturesText(pictures) + combinedHtml(all, pictures) + effectsHtml(cases, unit.median, noise) + rivalsHtml(cases);
+    body += picturesText(pictures) + combinedHtml(all, pictures) + effectsHtml(cases, unit.median) + rivalsHtml(cases);
     for (const CaseRows& one : cases) body += caseHtml(one, pictures, timeUnit);
     body += chartPictures(pictures.pngs);
     return htmlPage({"The trade: error, time and memory", summaryOf(rows, cases, unit, noise), body, chartStyle(), chartScript()});
+}
+
+std::string sweepTablesMarkdown(const std::vector<Measurement>& rows)
+{
+    const std::vector<CaseRows> cases = casesOf(rows);
+    const std::vector<Effect> effects = effectsOf(cases, calibrationUnit(rows).median, toleranceOf(cases));
+    std::string text;
+    for (const ReportTable& table :
+         {casesTable(cases), presetsTable(presetsAgainstPathTracer(cases)), combinedTable(combineCases(cases)), effectsTable(effects), nothingTable(effects)})
+        if (!table.rows.empty()) text += "## " + table.title + "\n\n" + markdownTable(table) + "\n";
+    return text;
 }
 
 }  // namespace lrsm

@@ -12,4 +12,7 @@ namespace lrsm {
 /// those of a sweep in progress: presets, scenes and path tracer may be missing.
 std::string sweepReportHtml(const std::vector<Measurement>& rows, const std::string& directory);
 
+/// DIR/tables.md: scenes, presets, all scenes, one setting at a time, each a heading and a table, for pages of documentation.
+std::string sweepTablesMarkdown(const std::vector<Measurement>& rows);
+
 }  // namespace lrsm

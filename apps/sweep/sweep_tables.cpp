@@ -74,6 +74,12 @@ std::string costText(const Looked& looked)
     return "<= floor";
 }
 
+std::string spanText(const std::vector<double>& values)
+{
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return shortNumber(*least) + " .. " + shortNumber(*most);
+}
+
 std::string ratioText(const std::optional<double>& ratio)
 {
     return ratio ? shortNumber(*ratio) : "";
@@ -121,7 +127,9 @@ ReportTable casesTable(const std::vector<CaseRows>& cases)
 
 ReportTable effectsTable(const std::vector<Effect>& effects)
 {
-    ReportTable table{"", {"value", "around", "verdict", "% of error a ms", "error, %", "worst scene, %", "time, %", "ms", "memory, %", "scenes changed"}, {}};
+    ReportTable table{"One setting at a time",
+                      {"value", "around", "verdict", "% of error a ms", "error, %", "worst scene, %", "time, %", "ms", "memory, %", "scenes changed"},
+                      {}};
     for (const Effect& e : effects)
         if (e.kind != EffectKind::changesNothing) table.rows.push_back(effectRow(e));
     return table;
@@ -129,25 +137,9 @@ ReportTable effectsTable(const std::vector<Effect>& effects)
 
 ReportTable nothingTable(const std::vector<Effect>& effects)
 {
-    ReportTable table{"", {"value", "around", "scenes", "time, %", "memory, %"}, {}};
+    ReportTable table{"Changes nothing", {"value", "around", "scenes", "time, %", "memory, %"}, {}};
     for (const Effect& e : effects)
         if (e.kind == EffectKind::changesNothing) table.rows.push_back({e.label, e.base, std::to_string(e.cases), changeText(e.cost), changeText(e.bytes)});
-    return table;
-}
-
-ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<Effect>& effects)
-{
-    ReportTable table{"", {"value", "rows", "closest miss: dearer by, %", "changes a bit", "values on a front"}, {}};
-    const auto onFront = [](const TriedValue& t) { return t.timeFronts + t.memoryFronts > 0; };
-    for (const TriedValue& t : tried) {
-        if (onFront(t)) continue;
-        std::string others;
-        for (const TriedValue& other : tried)
-            if (other.key == t.key && onFront(other)) others += (others.empty() ? "" : ", ") + other.value;
-        const auto effect = std::find_if(effects.begin(), effects.end(), [&](const Effect& e) { return e.assignment == t.key + "=" + t.value; });
-        const std::string changes = effect == effects.end() ? "" : effect->kind == EffectKind::changesNothing ? "no" : "yes";
-        table.rows.push_back({t.key + "=" + t.value, std::to_string(t.rows), shortNumber(100.0 * t.closest), changes, others});
-    }
     return table;
 }
 
@@ -162,26 +154,18 @@ ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets)
     return table;
 }
 
-ReportTable equalTable(const std::vector<EqualRow>& rows)
+ReportTable presetsTable(const std::vector<EqualRow>& rows)
 {
-    ReportTable table{"", {"scene", "preset", "frames", "error, %", "equal time: its error, %", "ratio", "equal error: its frames", "ratio"}, {}};
-    for (const EqualRow& r : rows)
-        table.rows.push_back({r.name, r.preset, plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error),
-                              errorText(r.tracerError, " (1 spp is dearer)"), ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
-    return table;
-}
-
-ReportTable tracerTable(const std::vector<TracerRow>& rows)
-{
-    ReportTable table{"", {"scene", "spp", "frames", "error, %", "LRSM: frames", "error, %", "ratio of frames", "LRSM's settings against balanced"}, {}};
-    for (const TracerRow& r : rows) {
-        std::vector<std::string> row = {r.name, std::to_string(r.samples), plainNumber(r.cost), r.atFloor ? "<= floor" : shortNumber(100.0 * r.error)};
-        if (r.rival)
-            row.insert(row.end(), {plainNumber(r.rival->cost), shortNumber(100.0 * r.rival->error.net()), ratioText(r.costRatio), changedText(*r.rival)});
-        else
-            row.insert(row.end(), {"", r.leastError > 0.0 ? "> " + shortNumber(100.0 * std::max(0.0, r.leastError)) : "", "",
-                                   r.atFloor ? "not compared" : "none errs as little"});
-        table.rows.push_back(std::move(row));
+    ReportTable table{"Presets, scene by scene",
+                      {"scene", "preset", "energy", "error, %", "MAE, %", "FLIP", "frames", "over balanced's", "MB", "path tracer in its time: error, %",
+                       "over the preset's", "path tracer for its error: frames", "over the preset's"},
+                      {}};
+    for (const EqualRow& r : rows) {
+        const Measurement& row = *r.row;
+        table.rows.push_back({r.name, row.label, shortNumber(row.error.energy), r.atFloor ? "<= floor" : shortNumber(100.0 * row.error.net()),
+                              shortNumber(100.0 * row.error.mae), shortNumber(row.error.flip), plainNumber(row.cost),
+                              r.balanced ? shortNumber(row.cost / r.balanced->cost) : "", megabytes(row.bytes), errorText(r.tracerError, " (1 spp is dearer)"),
+                              ratioText(r.errorRatio), costText(r.tracerCost), ratioText(r.costRatio)});
     }
     return table;
 }
@@ -196,11 +180,30 @@ ReportTable frontTable(const std::string& title, const std::vector<const Measure
     return table;
 }
 
-ReportTable combinedFrontTable(const CombinedCases& all)
+ReportTable combinedTable(const CombinedCases& all)
 {
-    ReportTable table{"Front over all scenes: over balanced", {"time", "error", "memory", "settings against balanced"}, {}};
-    for (const CombinedRow* row : combinedFront(all))
-        table.rows.push_back({shortNumber(row->cost), shortNumber(row->error), shortNumber(row->bytes), changedText(*row->rows.front())});
+    ReportTable table{"All scenes: over balanced", {"settings", "time", "error", "energy", "memory", "on the front"}, {}};
+    for (const CaseRows* one : all.cases) table.head.push_back(one->name + ": error");
+    const std::vector<const CombinedRow*> front = combinedFront(all);
+    std::vector<const CombinedRow*> rows;
+    for (const CombinedRow& row : all.settings) rows.push_back(&row);
+    std::stable_sort(rows.begin(), rows.end(), [](const CombinedRow* a, const CombinedRow* b) { return a->cost < b->cost; });
+    for (const CombinedRow* row : rows) {
+        std::vector<double> costs, errors, energies;
+        for (std::size_t i = 0; i < row->rows.size(); ++i) {
+            costs.push_back(row->relative[i].cost);
+            errors.push_back(row->relative[i].error);
+            energies.push_back(row->rows[i]->error.energy);
+        }
+        std::vector<std::string> cells = {row->rows.front()->label,
+                                          shortNumber(row->cost) + " (" + spanText(costs) + ")",
+                                          shortNumber(row->error) + " (" + spanText(errors) + ")",
+                                          spanText(energies),
+                                          shortNumber(row->bytes),
+                                          std::find(front.begin(), front.end(), row) == front.end() ? "" : "yes"};
+        for (const double error : errors) cells.push_back(shortNumber(error));
+        table.rows.push_back(std::move(cells));
+    }
     return table;
 }
 

@@ -22,12 +22,11 @@ ReportTable casesTable(const std::vector<CaseRows>& cases);
 /// Effects but those that change nothing; those alone.
 ReportTable effectsTable(const std::vector<Effect>& effects);
 ReportTable nothingTable(const std::vector<Effect>& effects);
-/// Values on no front; those of the same setting that are on one are named beside them, and whether the value alone changes a bit.
-ReportTable neverTable(const std::vector<TriedValue>& tried, const std::vector<Effect>& effects);
 ReportTable equalSummaryTable(const std::vector<EqualSummary>& presets);
-ReportTable equalTable(const std::vector<EqualRow>& rows);
-ReportTable tracerTable(const std::vector<TracerRow>& rows);
+/// Presets scene by scene, the path tracer beside them.
+ReportTable presetsTable(const std::vector<EqualRow>& rows);
 ReportTable frontTable(const std::string& title, const std::vector<const Measurement*>& front);
-ReportTable combinedFrontTable(const CombinedCases& all);
+/// Settings measured on all scenes by rising cost, over balanced: mean (least .. largest), and the error scene by scene.
+ReportTable combinedTable(const CombinedCases& all);
 
 }  // namespace lrsm

@@ -77,7 +77,7 @@ TuneBudget chosenBudget(const TuneArguments& options)
 std::vector<std::string> trim(Settings& settings, const Scene& scene, const Camera& camera, const IVec2& size)
 {
     const SceneAnalysis analysis = analyseScene(scene, camera, analyseRequirements(scene, settings.force), settings, size.x, size.y);
-    const std::vector<Advice> advice = adviseSettings(analysis, settings, size.x, size.y);
+    const std::vector<Advice> advice = adviseSettings(scene, analysis, settings, size.x, size.y);
     std::vector<std::string> trimmed;
     for (const Advice& change : advice) trimmed.push_back(change.key + " " + change.from + " -> " + change.to + ": " + change.why);
     settings = applyAdvice(settings, advice);
@@ -101,7 +101,7 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
 
         const Requirements needs = analyseRequirements(scene, named.settings.force);
         const std::size_t bytes = frameBytes(predictMemory({scene, needs, named.settings, size.x, size.y}), size.x, size.y);
-        points.push_back({named, double(bytes) * 1e-6, {}, {}, {}, trimmed});
+        points.push_back({.named = named, .megabytes = double(bytes) * 1e-6, .probe = {}, .verified = {}, .skipped = {}, .trimmed = trimmed});
     }
     return points;
 }
@@ -219,8 +219,14 @@ int runTune(const TuneArguments& options)
     progress.clear();
 
     // The file holds every setting, so that it means the same over any preset.
-    TuneRecord record{
-        sceneCase.name, request, result, probeSize, small.figures().noise, small.samples(), asked ? asked->figures().noise : 0.0, asked ? asked->samples() : 0};
+    const TuneRecord record{.scene = sceneCase.name,
+                            .request = request,
+                            .result = result,
+                            .probeSize = probeSize,
+                            .probeNoise = small.figures().noise,
+                            .probeSamples = small.samples(),
+                            .verifyNoise = asked ? asked->figures().noise : 0.0,
+                            .verifySamples = asked ? asked->samples() : 0};
     const std::optional<std::size_t> written = result.chosen ? result.chosen : options.nearest ? result.nearest : std::nullopt;
     const std::string text = jsonText(tuneJson(record, written));
     if (written && !options.output.empty()) writeFileWhole(options.output, std::as_bytes(std::span(text)));

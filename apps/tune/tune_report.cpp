@@ -1,20 +1,14 @@
 #include "apps/tune/tune_report.h"
 
+#include "apps/sweep/sweep_tables.h"
 #include "core/report/table.h"
 #include "core/settings/settings_table.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
 
 namespace {
-
-/// Three digits, and whole numbers whole: 0.0993, 12.7, 1340.
-std::string figure(double value)
-{
-    return std::abs(value) >= 100.0 && std::abs(value) < 1e9 ? std::to_string(std::llround(value)) : shortNumber(value);
-}
 
 using TuneJson = nlohmann::ordered_json;
 
@@ -32,7 +26,7 @@ std::string budgetText(const TuneBudget& budget)
 {
     std::string text;
     const auto add = [&](const std::optional<double>& value, const std::string& before, const std::string& unit) {
-        if (value) text += (text.empty() ? "" : ", ") + before + " <= " + figure(*value) + unit;
+        if (value) text += (text.empty() ? "" : ", ") + before + " <= " + plainNumber(*value) + unit;
     };
     add(budget.error, metricWords(budget.metric), "");
     add(budget.milliseconds, "time", " ms");
@@ -88,13 +82,15 @@ TuneJson pointJson(const TunePoint& point, const TuneRecord& record)
 std::vector<std::string> tableRow(const TunePoint& point, bool chosen, const TuneRecord& record)
 {
     const auto before = predicted(point, record), after = verified(point, record);
-    const auto text = [](const std::optional<TuneFigures>& figures, double TuneFigures::*field) { return figures ? figure((*figures).*field) : std::string(); };
+    const auto text = [](const std::optional<TuneFigures>& figures, double TuneFigures::*field) {
+        return figures ? plainNumber((*figures).*field) : std::string();
+    };
     return {chosen ? "->" : "",
             point.named.label,
             text(before, &TuneFigures::error),
             text(before, &TuneFigures::milliseconds),
             text(before, &TuneFigures::cost),
-            figure(point.megabytes),
+            plainNumber(point.megabytes),
             text(after, &TuneFigures::error),
             text(after, &TuneFigures::milliseconds),
             point.skipped};
@@ -102,10 +98,11 @@ std::vector<std::string> tableRow(const TunePoint& point, bool chosen, const Tun
 
 std::string sentence(const TunePoint& point, const TuneRecord& record)
 {
-    const auto words = [](const TuneFigures& f) { return "error " + figure(f.error) + ", " + figure(f.milliseconds) + " ms"; };
-    std::string text = point.named.label + ", " + figure(point.megabytes) + " MB";
+    const auto words = [](const TuneFigures& f) { return "error " + plainNumber(f.error) + ", " + plainNumber(f.milliseconds) + " ms"; };
+    std::string text = point.named.label + ", " + plainNumber(point.megabytes) + " MB";
     if (const auto before = predicted(point, record)) text += "; predicted " + words(*before);
-    if (const auto after = verified(point, record)) text += "; verified " + words(*after) + " (this run took " + figure(point.verified->frame.median) + " ms)";
+    if (const auto after = verified(point, record))
+        text += "; verified " + words(*after) + " (this run took " + plainNumber(point.verified->frame.median) + " ms)";
     return text;
 }
 
@@ -145,10 +142,10 @@ void printTune(std::ostream& out, const TuneRecord& record, const std::string& f
     const TuneResult& result = record.result;
     out << record.scene << " at " << request.width << "x" << request.height << ": " << budgetText(request.budget) << "\n"
         << "error: " << metricWords(request.budget.metric) << " of the irradiance; the truth of the probes (" << record.probeSize.x << "x" << record.probeSize.y
-        << ", " << record.probeSamples << " spp) has noise " << figure(record.probeNoise);
-    if (record.verifySamples > 0) out << ", that of the verification (" << record.verifySamples << " spp) " << figure(record.verifyNoise);
-    out << "\ntime: one calibration frame is " << figure(result.scale.calibrationCpu) << " ms of processor time; wall time is "
-        << figure(result.scale.wallPerCpu) << " of a frame's processor time\n\n";
+        << ", " << record.probeSamples << " spp) has noise " << plainNumber(record.probeNoise);
+    if (record.verifySamples > 0) out << ", that of the verification (" << record.verifySamples << " spp) " << plainNumber(record.verifyNoise);
+    out << "\ntime: one calibration frame is " << plainNumber(result.scale.calibrationCpu) << " ms of processor time; wall time is "
+        << plainNumber(result.scale.wallPerCpu) << " of a frame's processor time\n\n";
 
     ReportTable table{"", {"", "settings", "error", "ms", "cal. frames", "MB", "error, verified", "ms, verified", "not probed"}, {}};
     const std::optional<std::size_t> marked = result.chosen ? result.chosen : result.nearest;

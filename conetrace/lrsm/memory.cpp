@@ -23,7 +23,7 @@ int layersOf(const MemoryQuestion& question, std::size_t light)
     const Settings& settings = question.settings;
     if (!settings.layers.dropEmpty || question.unknowns == Unknowns::most) return layersAsked(settings.layers);
     if (question.unknowns == Unknowns::least) return 1;
-    return buildLrsm(renderRsm(question.scene, question.scene.lights[light], question.needs, settings.rsm), settings.layers).layers();
+    return countLayers(renderRsm(question.scene, question.scene.lights[light], question.needs, settings.rsm), settings.layers);
 }
 
 std::string table2(int baseResolution, int layers)

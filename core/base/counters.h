@@ -10,7 +10,8 @@ namespace lrsm {
 
 struct Counter {
     std::string name;
-    double value = 0.0;  ///< counts up to 2^53 are exact
+    double value = 0.0;      ///< counts up to 2^53 are exact
+    bool describes = false;  ///< a figure of this output alone, for frame.json: sums over passes leave it out
 };
 using Counters = std::vector<Counter>;
 
@@ -26,6 +27,7 @@ inline double counterSum(const Counters& counters, std::string_view name)
 /// Adds to the counter of the same name, or appends it.
 inline void addTo(Counters& counters, const Counter& more)
 {
+    if (more.describes) return;
     for (Counter& counter : counters)
         if (counter.name == more.name) {
             counter.value += more.value;

@@ -64,14 +64,33 @@ std::string textTable(const ReportTable& table)
     return text;
 }
 
-std::string csvTable(const ReportTable& table)
+std::string csvTable(const ReportTable& table, const std::string& lineEnd)
 {
     std::string text;
     const auto line = [&](const std::vector<std::string>& row) {
         for (std::size_t i = 0; i < row.size(); ++i) text += (i ? "," : "") + csvCell(row[i]);
+        text += lineEnd;
+    };
+    line(table.head);
+    for (const auto& row : table.rows) line(row);
+    return text;
+}
+
+std::string markdownTable(const ReportTable& table)
+{
+    std::string text;
+    const auto line = [&](std::vector<std::string> row) {
+        row.resize(table.head.size());
+        text += "|";
+        for (const std::string& cell : row) {
+            text += " ";
+            for (const char letter : cell) text += letter == '|' ? std::string("\\|") : std::string(1, letter);
+            text += " |";
+        }
         text += "\n";
     };
     line(table.head);
+    line(std::vector<std::string>(table.head.size(), "---"));
     for (const auto& row : table.rows) line(row);
     return text;
 }

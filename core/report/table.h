@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-/// Tables, written for a terminal, for a spreadsheet, and (html.h) for a page.
+/// Tables, written for a terminal, for a spreadsheet, for Markdown, and (html.h) for a page.
 namespace lrsm {
 
 struct ReportTable {
@@ -19,8 +19,11 @@ std::string textTable(const ReportTable& table);
 /// Which columns hold numbers ("< 3" and nothing count as such) alone: those stand to the right. One entry for each column of the head.
 std::vector<bool> numberColumns(const ReportTable& table);
 
-/// RFC 4180, with "\n" for line ends; the head is the first line, the title is not written.
-std::string csvTable(const ReportTable& table);
+/// RFC 4180 but for its line ends; the head is the first line, the title is not written.
+std::string csvTable(const ReportTable& table, const std::string& lineEnd = "\n");
+
+/// Of GitHub, without the title.
+std::string markdownTable(const ReportTable& table);
 
 /// The shortest digits that restore the value's bits; "nan", "inf".
 std::string exactNumber(double value);

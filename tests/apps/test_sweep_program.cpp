@@ -51,7 +51,7 @@ TEST_CASE("program: sweep keeps a row a setting and scene with its picture, and 
         if (row["kind"] != "path_tracer") CHECK(row["voxel_resolution"] == 32);
     }
     CHECK(traced == 6);
-    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) CHECK(fs::file_size(folder / name) > 0);
+    for (const char* name : {"sweep.csv", "sweep.json", "report.html", "tables.md"}) CHECK(fs::file_size(folder / name) > 0);
     CHECK(Json::parse(readText(folder / "sweep.json")).size() == rows.size());
 
     // All is there: nothing is measured again, and the files can be made from the rows alone.

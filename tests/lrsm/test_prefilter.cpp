@@ -187,6 +187,7 @@ TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrs
     const Lrsm dropped = buildLrsm(rsm, settings);
     CHECK(dropped.layers() == 1);
     CHECK(dropped.layersAsked == 8);
+    CHECK(countLayers(rsm, settings) == 1);
     CHECK(dropped.validTexelsPerLayer.front() == 1024);
     CHECK(dropped.ranges.front().depthMin == 0.25f);
     CHECK(dropped.ranges.front().nDotLMin == 0.5f);
@@ -194,6 +195,7 @@ TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrs
     settings.dropEmpty = false;
     const Lrsm kept = buildLrsm(rsm, settings);
     REQUIRE(kept.layers() == 8);
+    CHECK(countLayers(rsm, settings) == 8);
     CHECK(kept.layersAsked == 8);
     for (int layer = 0; layer < 8; ++layer) {
         CHECK((kept.ranges[std::size_t(layer)] == dropped.ranges[0]) == (kept.validTexelsPerLayer[std::size_t(layer)] > 0));

@@ -156,28 +156,6 @@ TEST_CASE("an effect changes something when one scene of several shows it", "[sw
     CHECK(density.worstError == Approx(0.5));
 }
 
-TEST_CASE("values on no front are named with how far they miss it", "[sweep]")
-{
-    const std::vector<Measurement> rows = syntheticSweep(1);
-    const std::vector<CaseRows> cases = casesOf(rows);
-    const std::vector<TriedValue> tried = triedValues(cases);
-    const auto find = [&](const std::string& key, const std::string& value) {
-        const auto found = std::find_if(tried.begin(), tried.end(), [&](const TriedValue& t) { return t.key == key && t.value == value; });
-        REQUIRE(found != tried.end());
-        return *found;
-    };
-    const TriedValue twelve = find("cone_count", "12");
-    CHECK(twelve.rows == 1);
-    CHECK(twelve.timeFronts + twelve.memoryFronts == 0);
-    // (8, 0.08) against the front's (3.9, 0.07).
-    CHECK(twelve.closest == Approx(8.0 / 3.9 - 1.0));
-    CHECK(find("mip_filter", "max").closest == Approx(4.5 / 1.0 - 1.0));
-    CHECK(find("step", "0.25").timeFronts == 1);
-    CHECK(find("step", "0.25").closest == 0.0);
-    CHECK(find("voxel_resolution", "256").memoryFronts == 1);
-    for (const TriedValue& t : tried) CHECK(t.key != "max_steps");  // one value alone was tried
-}
-
 TEST_CASE("presets and path tracer are compared at equal time and at equal error", "[sweep]")
 {
     const std::vector<Measurement> rows = syntheticSweep(2);
@@ -185,7 +163,8 @@ TEST_CASE("presets and path tracer are compared at equal time and at equal error
     REQUIRE(equal.size() == 6);
     const EqualRow& balanced = equal[3];
     CHECK(balanced.name == "scene1");
-    CHECK(balanced.preset == "balanced");
+    CHECK(balanced.row->label == "balanced");
+    CHECK(balanced.row == balanced.balanced);
     // 0.5 spp = 4: 8 spp, an exact power of the curve; 0.8 / sqrt(spp) = 0.1: 64 spp, cost 32.
     REQUIRE(balanced.errorRatio);
     CHECK(balanced.tracerError.value == Approx(2.0 * 0.8 / std::sqrt(8.0)));
@@ -229,34 +208,9 @@ TEST_CASE("nothing is compared below the noise floor or beyond what was measured
     for (Measurement& row : rows)
         if (row.label == "accurate") row.error.rmse = row.error.noise;
     for (const EqualRow& row : presetsAgainstPathTracer(casesOf(rows)))
-        if (row.preset == "accurate") {
+        if (row.row->label == "accurate") {
             CHECK(row.atFloor);
             CHECK(!row.errorRatio);
             CHECK(!row.costRatio);
         }
-}
-
-TEST_CASE("the front's cheapest point that errs no more stands beside each path count", "[sweep]")
-{
-    std::vector<Measurement> rows = syntheticSweep(1);
-    const std::vector<TracerRow> tracer = pathTracerAgainstFront(casesOf(rows));
-    REQUIRE(tracer.size() == 11);
-    // 16 spp: error 0.2, cost 8; `fast` has 0.2 for 1.
-    REQUIRE(tracer[4].rival);
-    CHECK(tracer[4].rival->label == "fast");
-    CHECK(*tracer[4].costRatio == Approx(8.0));
-    // 64 spp: error 0.1, cost 32; 0.07 for 3.9.
-    REQUIRE(tracer[6].rival);
-    CHECK(tracer[6].rival->label == "step=0.25");
-    CHECK(*tracer[6].costRatio == Approx(32.0 / 3.9));
-    // 1024 spp: error 0.025 is below the front's least.
-    CHECK(tracer[10].rival == nullptr);
-    CHECK(!tracer[10].atFloor);
-    CHECK(tracer[10].leastError == Approx(0.05));
-
-    for (Measurement& row : rows) row.error.noise = 0.03;
-    const std::vector<TracerRow> floored = pathTracerAgainstFront(casesOf(rows));
-    CHECK(floored[10].atFloor);
-    CHECK(floored[10].rival == nullptr);
-    CHECK(pathTracerAgainstFront({}).empty());
 }

@@ -1,3 +1,4 @@
+#include "apps/sweep/cases.h"
 #include "apps/sweep/search.h"
 #include "apps/sweep/search_grid.h"
 #include "catch.h"
@@ -114,54 +115,28 @@ double worstLoss(const std::vector<CostError>& truth, const std::vector<CostErro
 
 }  // namespace
 
-TEST_CASE("where cost and error are monotone, the search finds the exact front and renders fewer settings", "[sweep][search]")
+TEST_CASE("with the whole grid for a budget, the search visits each setting once and finds the exact front", "[sweep][search]")
 {
-    int visited = 0, spaces = 0;
-    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-        const SyntheticSpace space(seed, 0.0);
-        SearchOptions options = space.options(kSmallGrid + 1);
-        options.slack = options.costSlack = 0.0;
-        options.pruneChecks = 4;
-        const SearchResult result = runFrontSearch({}, smallAxes(), options);
-        CAPTURE(seed, result.visited, result.pruned);
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const SyntheticSpace space(seed, 0.05);
+        const SearchResult result = runFrontSearch({}, smallAxes(), space.options(kSmallGrid + 1));
+        CAPTURE(seed, result.visited);
         CHECK(result.exhausted);
+        CHECK(result.visited == kSmallGrid);
         CHECK(sameFront(frontOf(result), space.bruteFront()));
-        CHECK(result.visited + result.pruned == kSmallGrid);
-        CHECK(result.missed == 0);
-        CHECK(result.violations + result.costViolations == 0);
-        visited += result.visited;
-        ++spaces;
-    }
-    CHECK(visited < spaces * kSmallGrid * 6 / 10);
-}
-
-TEST_CASE("roughness within the slack costs no point of the front", "[sweep][search]")
-{
-    for (std::uint32_t seed = 20; seed < 28; ++seed) {
-        const SyntheticSpace space(seed, 0.05);  // two neighbours differ by exp(0.1) at most
-        SearchOptions options = space.options(kSmallGrid + 1);
-        options.slack = 0.1;
-        const SearchResult result = runFrontSearch({}, smallAxes(), options);
-        CAPTURE(seed, result.visited, result.pruned);
-        CHECK(result.exhausted);
-        CHECK(sameFront(frontOf(result), space.bruteFront()));
-        CHECK(result.missed == 0);
-        CHECK(result.violations == 0);
+        CHECK_FALSE(describeSearch(result).empty());
     }
 }
 
-TEST_CASE("roughness beyond the slack is reported, and costs little", "[sweep][search]")
+TEST_CASE("half of the grid for a budget costs little, however rough the error", "[sweep][search]")
 {
     double worst = 1.0;
-    int violations = 0;
     for (std::uint32_t seed = 40; seed < 48; ++seed) {
         const SyntheticSpace space(seed, 0.2);
         const SearchResult result = runFrontSearch({}, smallAxes(), space.options(120));
         CHECK(result.visited <= 120);
-        violations += result.violations;
         worst = std::max(worst, worstLoss(space.bruteFront(), frontOf(result)));
     }
-    CHECK(violations > 0);
     CAPTURE(worst);
     CHECK(worst < 1.35);
 }
@@ -214,7 +189,6 @@ TEST_CASE("the search is a function of its seed and values; stopped and begun ag
     CHECK(runs > 2);
     CHECK(resumed.visited == whole.visited);
     CHECK(resumed.abandoned == whole.abandoned);
-    CHECK(resumed.pruned == whole.pruned);
     REQUIRE(resumed.points.size() == whole.points.size());
     for (std::size_t i = 0; i < whole.points.size(); ++i) CHECK(resumed.points[i].settings == whole.points[i].settings);
 }
@@ -236,25 +210,6 @@ TEST_CASE("what is far behind after some scenes is abandoned, and only that", "[
 
     options.abandonMargin = std::numeric_limits<double>::infinity();
     CHECK(runFrontSearch({}, smallAxes(), options).abandoned == 0);
-}
-
-TEST_CASE("a wrong belief in monotonicity is found out by the check of the pruning", "[sweep][search]")
-{
-    // Finer is worse: pruning by the cheap end's error throws out the wrong half.
-    SearchOptions options;
-    options.budget = 60;
-    options.slack = 0.0;
-    options.pruneChecks = 10;
-    options.evaluate = [](const NamedSettings& named, std::size_t) -> std::optional<CostError> {
-        const GridPosition p = SettingsGrid({}, smallAxes()).nearest(named.settings);
-        const double fineness = p[0] + p[1] + p[2] + p[3];
-        // Dear and bad at the middle; cheap at neither end.
-        return CostError{1.0 + fineness, 1.0 + std::abs(fineness - 6.0) * (p[0] == 2 ? 0.1 : 1.0)};
-    };
-    const SearchResult result = runFrontSearch({}, smallAxes(), options);
-    CHECK(result.checked > 0);
-    CHECK(result.violations > 0);
-    CHECK_FALSE(describeSearch(result).empty());
 }
 
 TEST_CASE("presets beside the grid take part, and what has no meaning is refused", "[sweep][search]")
@@ -287,8 +242,6 @@ TEST_CASE("scenes count alike: geometric means over each scene's baseline", "[sw
     CHECK(std::isnan(combineScenes(std::vector<CostError>{}).cost));
 
     Measurement a, b, baseA, baseB;
-    a.caseKey = baseA.caseKey = "a";
-    b.caseKey = baseB.caseKey = "b";
     baseA.cost = 10.0;
     baseB.cost = 1.0;
     a.cost = 5.0;
@@ -297,10 +250,9 @@ TEST_CASE("scenes count alike: geometric means over each scene's baseline", "[sw
     baseB.error.rmse = 0.4;
     a.error.rmse = 0.1;
     b.error.rmse = 0.1;
-    const CostError value = combineScenes(std::vector<Measurement>{a, b}, std::vector<Measurement>{baseB, baseA});
+    const CostError value = combineScenes(std::vector<CostError>{relativeTo(a, baseA), relativeTo(b, baseB)});
     CHECK(value.cost == Approx(1.0));
     CHECK(value.error == Approx(std::sqrt(0.125)));
-    CHECK_THROWS_AS(combineScenes(std::vector<Measurement>{a, b}, std::vector<Measurement>{baseB}), InputError);
     // An exact picture has a ratio.
     a.error.rmse = 0.0;
     CHECK(relativeTo(a, baseA).error > 0.0);
@@ -315,7 +267,6 @@ TEST_CASE("options and axes out of range are refused", "[sweep][search]")
         return options;
     };
     CHECK_THROWS_AS(runFrontSearch({}, smallAxes(), with([](SearchOptions& o) { o.budget = 0; })), InputError);
-    CHECK_THROWS_AS(runFrontSearch({}, smallAxes(), with([](SearchOptions& o) { o.slack = std::nan(""); })), InputError);
     CHECK_THROWS_AS(runFrontSearch({}, smallAxes(), with([](SearchOptions& o) { o.abandonMargin = 1.0; })), InputError);
     CHECK_THROWS_AS(runFrontSearch({}, {{"cone_count", {}}}, space.options(10)), InputError);
     CHECK_THROWS_AS(runFrontSearch({}, {{"cone_count", {"1"}}, {"cone_count", {"2"}}}, space.options(10)), InputError);

@@ -77,6 +77,8 @@ TEST_CASE("a table aligns numbers to the right and counts characters, not bytes"
 
 TEST_CASE("a CSV cell comes back whole", "[report]")
 {
+    CHECK(csvTable({"", {"a"}, {{"1"}}}, "\r\n") == "a\r\n1\r\n");
+    CHECK(markdownTable({"not written", {"a", "b"}, {{"1", "x|y"}, {"2"}}}) == "| a | b |\n| --- | --- |\n| 1 | x\\|y |\n| 2 |  |\n");
     CHECK(csvTable({"not written", {"a", "b"}, {{"1,5", "say \"x\""}, {"two\nlines", ""}}}) == "a,b\n\"1,5\",\"say \"\"x\"\"\"\n\"two\nlines\",\n");
     for (const double value : {0.1, 1.0 / 3.0, 5e-324, -1.7976931348623157e308}) CHECK(std::strtod(exactNumber(value).c_str(), nullptr) == value);
 }
