@@ -65,14 +65,7 @@ void checkPartition(CheckRun& run)
              .errorKind = "absolute, linear depth",
              .bound = double(kPartitionMaxError)},
             worst, at);
-    run.add({.equation = "15",
-             .function = "partition, overlap is delta",
-             .oracle = "zMax of one layer - zMin of the next, in double",
-             .domain = "as above",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            overlaps, overlapAt);
+    run.add(exactCheck("15", "partition, overlap is delta", "zMax of one layer - zMin of the next, in double", "as above"), overlaps, overlapAt);
 }
 
 /// A map of one depth still gets a range to divide by, centred on it.
@@ -143,14 +136,8 @@ void checkDecay(CheckRun& run)
         const bool inside = atMax ? ulps < 0 || (ulps == 0 && !e.decayAtMax) : ulps >= 0;
         return decay(e, z) == (inside ? 1.0f : 0.0f) ? 0.0 : 1.0;
     });
-    run.add({.equation = "15",
-             .function = "decay, ends without overlap",
-             .oracle = "half-open intervals, the last one closed",
-             .domain = "z_c within 2 ULP of either end",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            ends, "case " + exactText(ends.input[0]));
+    run.add(exactCheck("15", "decay, ends without overlap", "half-open intervals, the last one closed", "z_c within 2 ULP of either end"), ends,
+            "case " + exactText(ends.input[0]));
 }
 
 /// Eq. 15 over all layers: no light is lost or counted twice at any depth of the map.
@@ -323,13 +310,8 @@ void checkStorage(CheckRun& run)
             }
             include(wrong, bad, at, bad > wrong.error ? texelText(settings, layer, lod, x, y) : std::string());
         });
-        run.add({.equation = "table1",
-                 .function = std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
-                 .oracle = "conversions in double of the float mean of the stored children",
-                 .domain = "a random map of 128^2, 2 x 2 layers, all levels",
-                 .boundName = "exact",
-                 .errorKind = "wrong results",
-                 .bound = 0.0},
+        run.add(exactCheck("table1", std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
+                           "conversions in double of the float mean of the stored children", "a random map of 128^2, 2 x 2 layers, all levels"),
                 wrong, at);
     }
 }

@@ -201,14 +201,7 @@ void checkStepOpacity(CheckRun& run)
     settings.opacity = OpacityModel::none;
     const auto plain =
         exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
-    run.add({.equation = "1",
-             .function = "stepOpacity, opacity = none",
-             .oracle = "min(a, 1)",
-             .domain = "a 0 .. 1.5",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            plain, "i = " + exactText(plain.input[0]));
+    run.add(exactCheck("1", "stepOpacity, opacity = none", "min(a, 1)", "a 0 .. 1.5"), plain, "i = " + exactText(plain.input[0]));
 
     ConeSettings exponential;
     exponential.transmittance = TransmittanceModel::exponential;

@@ -230,14 +230,9 @@ void checkMapEdges(CheckRun& run)
         const Vec3 centre = i / 2 % 2 ? Vec3(reach, 0.0f, 0.0f) : Vec3(0.0f, 0.0f, reach);
         return (sampleLrsm(sun, {centre, 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x > 0.0f) == (i / 4 != 1) ? 0.0 : 1.0;
     });
-    run.add({.equation = "5",
-             .function = "sampleLrsm, the map's edges",
-             .oracle = "lit on the edge and inside, 0 beyond and behind the light",
-             .domain = "all four edges, and 1/500 to either side",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            wrong, "case " + exactText(wrong.input[0]));
+    run.add(
+        exactCheck("5", "sampleLrsm, the map's edges", "lit on the edge and inside, 0 beyond and behind the light", "all four edges, and 1/500 to either side"),
+        wrong, "case " + exactText(wrong.input[0]));
 }
 
 }  // namespace

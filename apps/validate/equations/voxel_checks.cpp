@@ -73,14 +73,8 @@ void checkLevels(CheckRun& run)
                         wrong.include(found);
                     }
                 }
-    run.add({.equation = "sec3",
-             .function = "buildPyramid",
-             .oracle = "columns counted, means in double",
-             .domain = "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            wrong, at);
+    run.add(exactCheck("sec3", "buildPyramid", "columns counted, means in double", "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters"), wrong,
+            at);
     const auto scales = exhaust(6, [](std::uint64_t i) {
         OpacityPyramid pyramid;
         pyramid.axes = OpacityAxes::directional;
@@ -89,14 +83,7 @@ void checkLevels(CheckRun& run)
         pyramid.axes = OpacityAxes::isotropic;
         return directional == kScale[i] && densityScale(pyramid, static_cast<int>(i)) == 1.0f ? 0.0 : 1.0;
     });
-    run.add({.equation = "sec3",
-             .function = "densityScale",
-             .oracle = "2^-min(level, 3)",
-             .domain = "levels 0 .. 5",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            scales, "level = " + exactText(scales.input[0]));
+    run.add(exactCheck("sec3", "densityScale", "2^-min(level, 3)", "levels 0 .. 5"), scales, "level = " + exactText(scales.input[0]));
 }
 
 /// Quadrilinear lookup by tents over all texels near, in double.
@@ -182,13 +169,8 @@ void checkLookup(CheckRun& run)
             return on == exact && on == beside && atLevel(0.497f) == atLevel(0.0f) && atLevel(-0.497f) == atLevel(0.0f) ? 0.0 : 1.0;
         },
         813);
-    run.add({.equation = "sec3",
-             .function = "sampleOpacity, fractions in 1/256",
-             .oracle = "the exact lookup at the nearest lattice point",
-             .domain = "lattice points of every level, and up to 0.497 of a step beside them",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
+    run.add(exactCheck("sec3", "sampleOpacity, fractions in 1/256", "the exact lookup at the nearest lattice point",
+                       "lattice points of every level, and up to 0.497 of a step beside them"),
             snapped, inputText<float, 4>({"x", "y", "z", "level"}, snapped.input));
 }
 
