@@ -1,6 +1,6 @@
 // docs/equations.md against the program: constants, bounds and domains cannot drift apart.
-#include "apps/validate/equations/check_equations.h"
 #include "core/settings/settings.h"
+#include "quick_report.h"
 
 #include "catch.h"
 
@@ -38,10 +38,7 @@ TEST_CASE("docs/equations.md lists every check with its constant and bound as th
     std::ifstream file(LRSM_SOURCE_DIR "/docs/equations.md");
     std::stringstream page;
     page << file.rdbuf();
-    EquationOptions options;
-    options.effort = 0.001;
-    options.measureSpeed = false;
-    EquationReport report = checkEquations(options);
+    EquationReport report = test::quickReport();
     const std::vector<Row> written = rowsOf(page.str()), expected = rowsOf(equationsMarkdown(report));
     REQUIRE(written.size() == expected.size());
     std::erase_if(report.checks, [](const EquationCheck& check) { return check.boundName == "exact"; });
