@@ -120,8 +120,8 @@ int measureAll()
     forEachCase("", [&](const Case& one) {
         for (const auto& [variant, settings] : variants())
             for (const auto& [name, error] : rowsOf(one, variant, render(one, settings))) {
-                std::fprintf(stderr, "%-50s energy %.4f  net RMSE / mean %.4f  noise of the truth %.4f  FLIP %.4f\n", title(name).c_str(), error.energy, error.net(), error.noise,
-                             error.flip);
+                std::fprintf(stderr, "%-50s energy %.4f  net RMSE / mean %.4f  noise of the truth %.4f  FLIP %.4f\n", title(name).c_str(), error.energy,
+                             error.net(), error.noise, error.flip);
                 limits.emplace_back(name, limitsFor(error));
             }
     });
@@ -137,7 +137,8 @@ int plant(Loss loss)
     std::string caught;
     forEachCase("", [&](const Case& one) {
         const auto broken = [&](Loss planted) {
-            return judge(table, rowsOf(one, kPlantedIn, renderWithLoss(one.scene, one.camera(), preset(kPlantedIn), one.truth.width, one.truth.height, planted)));
+            return judge(table,
+                         rowsOf(one, kPlantedIn, renderWithLoss(one.scene, one.camera(), preset(kPlantedIn), one.truth.width, one.truth.height, planted)));
         };
         without += broken(Loss::none);
         if (broken(loss) > 0) caught += " " + one.name;

@@ -12,12 +12,10 @@ namespace lrsm::accuracy {
 /// The layers that are held, and where a frame has them.
 struct Layer {
     const char* name;  ///< as in image.exr
-    Image<Vec3> Frame::* picture;
+    Image<Vec3> Frame::*picture;
 };
-inline constexpr Layer kLayers[] = {{"irradiance", &Frame::irradiance},
-                                    {"indirect.specular", &Frame::indirectSpecular},
-                                    {"direct", &Frame::direct},
-                                    {"combined", &Frame::combined}};
+inline constexpr Layer kLayers[] = {
+    {"irradiance", &Frame::irradiance}, {"indirect.specular", &Frame::indirectSpecular}, {"direct", &Frame::direct}, {"combined", &Frame::combined}};
 
 struct StoredTruth {
     int width = 0, height = 0;

@@ -43,33 +43,6 @@ const Aabb kAround{Vec3(-15), Vec3(15)};
 
 }  // namespace
 
-TEST_CASE("light projection: (u, v, depth) of a point leads back to the point", "[lrsm][projection]")
-{
-    Random random(1);
-    const LightType type = GENERATE(LightType::directional, LightType::spot, LightType::cubeFace);
-    int checked = 0;
-    for (int i = 0; i < 3000; ++i) {
-        const LightProjection q = fitLightProjection(randomLight(random, type, kAround), kBounds, 256);
-        const Vec3 p = pointIn(random, kBounds);
-        const LightSpacePoint s = projectToLight(q, p);
-        if (!s.valid) {
-            REQUIRE(glm::dot(p - q.position, q.forward) <= 0.0f);
-            continue;
-        }
-        REQUIRE((s.depth >= -1e-5f && s.depth <= 1.0f + 1e-5f));
-        const float x = (2 * s.u - 1) * q.halfWidth, y = (1 - 2 * s.v) * q.halfWidth, metres = q.depthNear + s.depth * q.depthRange();
-        Vec3 back = q.position + q.right * x + q.up * y + q.forward * metres;
-        if (type != LightType::directional) {
-            if (std::abs(x) > 20 || std::abs(y) > 20) continue;  // almost beside the light: u, v lose the digits
-            back = q.position + glm::normalize(q.right * x + q.up * y + q.forward) * metres;
-        }
-        CAPTURE(i, s.u, s.v, s.depth);
-        REQUIRE(glm::length(back - p) < 2e-4f);
-        ++checked;
-    }
-    CHECK(checked > 800);
-}
-
 TEST_CASE("light projection: the clip matrix sees the same (u, v), and depth grows with distance along the axis", "[lrsm][projection]")
 {
     Random random(2);
@@ -79,6 +52,7 @@ TEST_CASE("light projection: the clip matrix sees the same (u, v), and depth gro
         const Mat4 clip = clipFromWorld(q);
         const Vec3 p = pointIn(random, kBounds);
         const LightSpacePoint s = projectToLight(q, p);
+        REQUIRE((!s.valid || (s.depth >= -1e-5f && s.depth <= 1.0f + 1e-5f)));
         if (!s.valid || std::abs(s.u - 0.5f) > 0.5f || std::abs(s.v - 0.5f) > 0.5f) continue;
         const Vec4 c = clip * Vec4(p, 1);
         const float axial = glm::dot(p - q.position, q.forward);

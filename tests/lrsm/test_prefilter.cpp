@@ -1,24 +1,17 @@
+// Means and storage are held against double in apps/validate/equations/layer_checks.cpp; here are traps, counts and invariances.
+#include "apps/validate/equations/synthetic_maps.h"
 #include "core/base/parallel.h"
-#include "lrsm/layers.h"
-#include "synthetic_rsm.h"
 
 #include <catch.h>
 #include <cstring>
 
 using namespace lrsm;
-using test::flatRsm;
-using test::randomRsm;
 
 namespace {
 
-LayerSettings layerSettings(int depthLayers, int normalLayers, Storage storage, float overlap = 0.0f)
+Rsm flatRsm(int resolution, float depth, const Vec3& radiance = Vec3(1.0f))
 {
-    LayerSettings settings;
-    settings.depthLayers = depthLayers;
-    settings.normalLayers = normalLayers;
-    settings.storage = storage;
-    settings.overlap = overlap;
-    return settings;
+    return flatMap(plainProjection(resolution), {.depth = depth, .radiance = radiance});
 }
 
 bool sameBits(const Lrsm& a, const Lrsm& b)
@@ -26,47 +19,6 @@ bool sameBits(const Lrsm& a, const Lrsm& b)
     return a.ranges == b.ranges && a.texels.size() == b.texels.size() && a.validTexelsPerLayer == b.validTexelsPerLayer &&
            a.negativeVariances == b.negativeVariances && a.conversions.halfSaturations == b.conversions.halfSaturations &&
            std::memcmp(a.texels.data(), b.texels.data(), bytesOf(a)) == 0;
-}
-
-/// The eleven numbers of a texel, in double.
-struct Twin {
-    double value[11] = {};
-};
-
-Twin stored(const LrsmTexel& t)
-{
-    Twin twin;
-    for (int c = 0; c < 3; ++c) twin.value[c] = t.radiance[c];
-    for (int c = 0; c < 4; ++c) twin.value[3 + c] = t.normal[c];
-    for (int c = 0; c < 3; ++c) twin.value[7 + c] = t.depth[c];
-    return twin;
-}
-
-/// Eq. 6, 8, 10, 11 and 14's A for the square of RSM texels under one LRSM texel: plain sums in double over the layer's members,
-/// membership by the ranges as the paper states it.
-Twin fromRsm(const Rsm& rsm, const std::vector<LayerRange>& all, const LayerRange& range, int lod, int x, int y)
-{
-    const int edge = 2 << lod;
-    const auto last = [&](float max, float LayerRange::*end) {
-        for (const LayerRange& other : all)
-            if (other.*end > max) return false;
-        return true;
-    };
-    const bool depthClosed = last(range.depthMax, &LayerRange::depthMax), normalClosed = last(range.nDotLMax, &LayerRange::nDotLMax);
-    Twin twin;
-    for (int j = 0; j < edge; ++j)
-        for (int i = 0; i < edge; ++i) {
-            const RsmTexel& texel = rsm.texels.at(x * edge + i, y * edge + j);
-            const float z = rsm.depthLinear.at(x * edge + i, y * edge + j);
-            const bool inDepth = z >= range.depthMin && (depthClosed ? z <= range.depthMax : z < range.depthMax);
-            const bool inNormal = texel.nDotL >= range.nDotLMin && (normalClosed ? texel.nDotL <= range.nDotLMax : texel.nDotL < range.nDotLMax);
-            if (texel.coverage == 0.0f || !inDepth || !inNormal) continue;
-            const double w = (double(z) - range.depthMin) / (double(range.depthMax) - range.depthMin);
-            const double values[11] = {
-                texel.radiance.x, texel.radiance.y, texel.radiance.z, texel.normal.x, texel.normal.y, texel.normal.z, 1.0, w, w * w, 1.0, 0.0};
-            for (int c = 0; c < 11; ++c) twin.value[c] += values[c] / (edge * edge);
-        }
-    return twin;
 }
 
 template <class Visit>
@@ -80,88 +32,10 @@ void forEachTexel(const Lrsm& lrsm, const Visit& visit)
 
 }  // namespace
 
-TEST_CASE("every texel of the pyramids is the mean over its RSM texels, in double", "[lrsm][eq6][eq8][eq10][eq11][eq13]")
-{
-    const float overlap = GENERATE(0.0f, 0.3f);
-    const Rsm rsm = randomRsm(128, 11);
-    const LayerSettings settings = layerSettings(3, 2, Storage::float32, overlap);
-    const auto all = partition(rsm, settings);
-    const Lrsm lrsm = buildLrsm(rsm, settings);
-    REQUIRE(lrsm.layers() == 6);
-    REQUIRE(lrsm.levels() == 7);
-    forEachTexel(lrsm, [&](int layer, int lod, int x, int y, const LrsmTexel& texel) {
-        const Twin expected = fromRsm(rsm, all, lrsm.ranges[std::size_t(layer)], lod, x, y), actual = stored(texel);
-        for (int c = 0; c < 11; ++c) {
-            CAPTURE(layer, lod, x, y, c);
-            REQUIRE(std::abs(actual.value[c] - expected.value[c]) <= 4e-7 * std::max(1.0, std::abs(expected.value[c])));
-        }
-    });
-}
-
-TEST_CASE("stored GPU mips are the conversion of the float32 mean of their stored children", "[lrsm][table1]")
-{
-    const auto rounding = GENERATE(HalfRounding::d3d, HalfRounding::nearestEven);
-    const int layers = GENERATE(1, 2);  // one: alphas of more bits than a half has
-    const Rsm rsm = randomRsm(128, 12);
-    LayerSettings settings = layerSettings(layers, layers, Storage::gpu);
-    settings.halfRounding = rounding;
-    const Lrsm lrsm = buildLrsm(rsm, settings);
-    forEachTexel(lrsm, [&](int layer, int lod, int x, int y, const LrsmTexel& texel) {
-        if (lod == 0) return;
-        const int width = lrsm.resolutionAt(lod - 1);
-        const LrsmTexel* child = lrsm.level(layer, lod - 1) + (2 * y) * width + 2 * x;
-        const auto mean = [&](auto part, int c) {
-            return ((child[0].*part)[c] + (child[1].*part)[c] + ((child[width].*part)[c] + (child[width + 1].*part)[c])) * 0.25f;
-        };
-        ConversionCounts counts;
-        CAPTURE(layer, lod, x, y);
-        for (int c = 0; c < 3; ++c) REQUIRE(texel.radiance[c] == roundToHalf(mean(&LrsmTexel::radiance, c), rounding, counts));
-        for (int c = 0; c < 4; ++c) REQUIRE(texel.normal[c] == roundToHalf(mean(&LrsmTexel::normal, c), rounding, counts));
-        for (int c = 0; c < 3; ++c) REQUIRE(texel.depth[c] == roundToUnorm16(mean(&LrsmTexel::depth, c), counts));
-    });
-}
-
-TEST_CASE("Table 1's storage differs from float32 by its rounding alone, level by level", "[lrsm][table1]")
-{
-    const auto rounding = GENERATE(HalfRounding::d3d, HalfRounding::nearestEven);
-    const Rsm rsm = randomRsm(128, 13);
-    LayerSettings settings = layerSettings(3, 2, Storage::gpu);
-    settings.halfRounding = rounding;
-    const Lrsm gpu = buildLrsm(rsm, settings);
-    settings.storage = Storage::float32;
-    const Lrsm wide = buildLrsm(rsm, settings);
-    REQUIRE(gpu.texels.size() == wide.texels.size());
-    forEachTexel(gpu, [&](int layer, int lod, int x, int y, const LrsmTexel& texel) {
-        const LrsmTexel& exact = wide.level(layer, lod)[y * wide.resolutionAt(lod) + x];
-        // A mean of values that are each off by at most e is off by at most e; each conversion adds its own.
-        const double conversions = lod + 1, halfStep = rounding == HalfRounding::d3d ? 0x1p-10 : 0x1p-11;
-        for (int c = 0; c < 3; ++c) {
-            REQUIRE(std::abs(double(texel.radiance[c]) - exact.radiance[c]) <= conversions * halfStep * 4.0);
-            REQUIRE(std::abs(double(texel.depth[c]) - exact.depth[c]) <= conversions * 0.505 / 65535.0);  // c 65535 + 0.5 is itself rounded to 2^-8
-        }
-        for (int c = 0; c < 4; ++c) REQUIRE(std::abs(double(texel.normal[c]) - exact.normal[c]) <= conversions * halfStep);
-    });
-}
-
-TEST_CASE("no energy is lost: A R of all layers at the top is the RSM's mean radiance", "[lrsm][eq14]")
-{
-    const auto storage = GENERATE(Storage::float32, Storage::gpu);
-    const Rsm rsm = randomRsm(256, 14, 0.6f);
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(5, 3, storage));
-    double expected[3] = {}, actual[3] = {};
-    for (const RsmTexel& texel : rsm.texels.texels)
-        for (int c = 0; c < 3; ++c) expected[c] += double(texel.radiance[c]) / double(rsm.texels.texels.size());
-    for (int layer = 0; layer < lrsm.layers(); ++layer)
-        for (int c = 0; c < 3; ++c) actual[c] += double(lrsm.level(layer, lrsm.levels() - 1)->radiance[c]);
-    // Half toward zero loses up to 2^-10 of a value at each of the 8 levels.
-    const double tolerance = storage == Storage::gpu ? 8.0 * 0x1p-10 : 1e-6;
-    for (int c = 0; c < 3; ++c) CHECK(std::abs(actual[c] - expected[c]) <= tolerance * expected[c]);
-}
-
 TEST_CASE("with overlap a texel is stored in both layers, and decay restores the energy", "[lrsm][eq14][eq15]")
 {
-    const Rsm rsm = randomRsm(64, 15, 1.0f);
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(4, 1, Storage::float32, 0.4f));
+    const Rsm rsm = syntheticRsm(64, 15, 1.0f);
+    const Lrsm lrsm = buildLrsm(rsm, layersOf(4, 1, 0.4f));
     std::uint64_t expected = 0, storedTexels = 0;
     for (const float z : rsm.depthLinear.texels)
         for (const LayerRange& range : lrsm.ranges) expected += z >= range.depthMin && z < range.depthMax ? 1 : 0;
@@ -173,7 +47,7 @@ TEST_CASE("with overlap a texel is stored in both layers, and decay restores the
 TEST_CASE("predicted bytes are the bytes that layers hold", "[lrsm][memory]")
 {
     const int resolution = GENERATE(2, 4, 64, 256);
-    const Lrsm lrsm = buildLrsm(randomRsm(resolution, 16, 1.0f), layerSettings(2, 2, Storage::gpu));
+    const Lrsm lrsm = buildLrsm(syntheticRsm(resolution, 16, 1.0f), layersOf(2, 2, 0.0f, Storage::gpu));
     CHECK(bytesOf(lrsm) == predictLayerBytes(resolution) * std::size_t(lrsm.layers()));
     CHECK(gpuBytesOf(lrsm) * 2 == bytesOf(lrsm));
     CHECK(predictLayerBytes(1024) == std::size_t(48) * 349525);  // Table 2's 512^2: (4^10 - 1) / 3 texels
@@ -181,8 +55,8 @@ TEST_CASE("predicted bytes are the bytes that layers hold", "[lrsm][memory]")
 
 TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrsm]")
 {
-    const Rsm rsm = flatRsm(32, 0.25f, Vec3(1.0f), Vec3(0.0f, 0.0f, 1.0f), 0.9f);
-    LayerSettings settings = layerSettings(4, 2, Storage::gpu);
+    const Rsm rsm = flatRsm(32, 0.25f);
+    LayerSettings settings = layersOf(4, 2, 0.0f, Storage::gpu);
     settings.fitRanges = false;
     const Lrsm dropped = buildLrsm(rsm, settings);
     CHECK(dropped.layers() == 1);
@@ -211,7 +85,7 @@ TEST_CASE("a layer of texels that send no light is dropped; one lit texel keeps 
 {
     Rsm rsm = flatRsm(16, 0.1f);
     for (int x = 0; x < 16; ++x) rsm.depthLinear.at(x, 3) = 0.9f, rsm.texels.at(x, 3).radiance = Vec3(0.0f);
-    const LayerSettings settings = layerSettings(2, 1, Storage::gpu);
+    const LayerSettings settings = layersOf(2, 1, 0.0f, Storage::gpu);
     const Lrsm dark = buildLrsm(rsm, settings);
     REQUIRE(dark.layers() == 1);
     CHECK(dark.ranges.front().depthMin == Approx(0.1f).epsilon(1e-3));
@@ -226,10 +100,10 @@ TEST_CASE("degenerate maps: nothing drawn, one texel, one depth, the smallest si
 {
     const auto storage = GENERATE(Storage::float32, Storage::gpu);
     const float overlap = GENERATE(0.0f, 0.5f);
-    const LayerSettings settings = layerSettings(3, 2, storage, overlap);
+    const LayerSettings settings = layersOf(3, 2, overlap, storage);
     SECTION("nothing drawn")
     {
-        const Lrsm lrsm = buildLrsm(randomRsm(16, 17, 0.0f), settings);
+        const Lrsm lrsm = buildLrsm(syntheticRsm(16, 17, 0.0f), settings);
         CHECK(lrsm.layers() == 0);
         CHECK(lrsm.layersAsked == 6);
         CHECK(lrsm.levels() == 4);
@@ -237,7 +111,7 @@ TEST_CASE("degenerate maps: nothing drawn, one texel, one depth, the smallest si
     }
     SECTION("one texel")
     {
-        Rsm rsm = randomRsm(16, 18, 0.0f);
+        Rsm rsm = syntheticRsm(16, 18, 0.0f);
         rsm.texels.at(5, 9) = RsmTexel{Vec3(2.0f), 1.0f, Vec3(0.0f, 1.0f, 0.0f), 1.0f};
         rsm.depthLinear.at(5, 9) = 0.625f;
         const Lrsm lrsm = buildLrsm(rsm, settings);
@@ -269,7 +143,7 @@ TEST_CASE("equal depths stay exactly equal up the pyramid", "[lrsm][eq10]")
 {
     // A running mean of 4096 equal floats drifts; sums of pairs do not.
     const float depth = GENERATE(0.1f, 0.3f, 0.7777777f);
-    LayerSettings settings = layerSettings(1, 1, Storage::float32);
+    LayerSettings settings = layersOf(1, 1);
     settings.fitRanges = false;
     const Lrsm lrsm = buildLrsm(flatRsm(128, depth), settings);
     forEachTexel(lrsm, [&](int, int, int, int, const LrsmTexel& t) {
@@ -281,8 +155,8 @@ TEST_CASE("equal depths stay exactly equal up the pyramid", "[lrsm][eq10]")
 
 TEST_CASE("negative variances are counted over all stored texels", "[lrsm][eq11]")
 {
-    const Rsm rsm = GENERATE(flatRsm(64, 0.37f), flatRsm(256, 0.613f), randomRsm(64, 19));
-    LayerSettings settings = layerSettings(2, 1, Storage::gpu);
+    const Rsm rsm = GENERATE(flatRsm(64, 0.37f), flatRsm(256, 0.613f), syntheticRsm(64, 19));
+    LayerSettings settings = layersOf(2, 1, 0.0f, Storage::gpu);
     settings.fitRanges = false;
     const Lrsm lrsm = buildLrsm(rsm, settings);
     std::uint64_t negative = 0, covered = 0;
@@ -300,7 +174,7 @@ TEST_CASE("negative variances are counted over all stored texels", "[lrsm][eq11]
 TEST_CASE("conversions that saturate or meet NaN are counted", "[lrsm][table1]")
 {
     Rsm rsm = flatRsm(4, 0.5f, Vec3(1e6f, 1.0f, std::numeric_limits<float>::quiet_NaN()));
-    LayerSettings settings = layerSettings(1, 1, Storage::gpu);
+    LayerSettings settings = layersOf(1, 1, 0.0f, Storage::gpu);
     const Lrsm lrsm = buildLrsm(rsm, settings);
     CHECK(lrsm.conversions.halfSaturations == 4);  // stored as 65504, which no longer saturates in the level above
     CHECK(lrsm.conversions.nans == 5);
@@ -309,8 +183,8 @@ TEST_CASE("conversions that saturate or meet NaN are counted", "[lrsm][table1]")
 
 TEST_CASE("the number of threads changes no bit", "[lrsm][determinism]")
 {
-    const Rsm rsm = randomRsm(256, 20);
-    const LayerSettings settings = layerSettings(3, 2, Storage::gpu, 0.1f);
+    const Rsm rsm = syntheticRsm(256, 20);
+    const LayerSettings settings = layersOf(3, 2, 0.1f, Storage::gpu);
     std::vector<Lrsm> results;
     for (const int threads : {1, 2, 8}) {
         const ThreadLimit limit(threads);
@@ -322,8 +196,8 @@ TEST_CASE("the number of threads changes no bit", "[lrsm][determinism]")
 
 TEST_CASE("light scaled by 2^k scales A R exactly and nothing else", "[lrsm][invariance]")
 {
-    const Rsm rsm = randomRsm(32, 21);
-    const LayerSettings settings = layerSettings(3, 2, Storage::float32);
+    const Rsm rsm = syntheticRsm(32, 21);
+    const LayerSettings settings = layersOf(3, 2);
     const Lrsm lrsm = buildLrsm(rsm, settings);
     for (const float scale : {0x1p-20f, 0.5f, 8.0f, 0x1p30f}) {
         Rsm scaled = rsm;
@@ -338,8 +212,8 @@ TEST_CASE("light scaled by 2^k scales A R exactly and nothing else", "[lrsm][inv
 TEST_CASE("depths scaled by 2^-k, or moved by one, keep every stored bit", "[lrsm][invariance]")
 {
     const float overlap = GENERATE(0.0f, 0.25f);
-    const LayerSettings settings = layerSettings(4, 2, Storage::float32, overlap);
-    Rsm rsm = randomRsm(32, 22, 1.0f, 0.0f, 0.25f);
+    const LayerSettings settings = layersOf(4, 2, overlap);
+    Rsm rsm = syntheticRsm(32, 22, 1.0f, 0.0f, 0.25f);
     for (float& z : rsm.depthLinear.texels) z = std::floor(z * 1024.0f) / 1024.0f;
     rsm.depthLinear.texels[0] = 0.0f;
     rsm.depthLinear.texels[1] = 0.25f;

@@ -49,35 +49,6 @@ RsmSettings settingsOf(int resolution, Storage storage)
 
 }  // namespace
 
-TEST_CASE("RSM: a floor under a spot light reflects rho I cos / (pi r^2) times the cone's falloff", "[lrsm][rsm][eq2]")
-{
-    const float height = 2.5f, inner = 0.3f, outer = 0.6f;
-    const Vec3 rho(0.75f, 0.5f, 0.1f), intensity(3, 20, 100);
-    const Light light = spotLight({0, height, 0}, {0, 0, 0}, intensity, inner, outer);
-    const Rsm rsm = renderRsm(floorScene(5, rho), light, kEverything, settingsOf(128, Storage::float32));
-
-    int lit = 0, dark = 0;
-    for (int y = 0; y < 128; ++y)
-        for (int x = 0; x < 128; ++x) {
-            const RsmTexel& texel = rsm.texels.at(x, y);
-            const double tangentX = ((x + 0.5) / 64 - 1) * std::tan(double(outer)), tangentY = ((y + 0.5) / 64 - 1) * std::tan(double(outer));
-            const double cosine = 1 / std::sqrt(1 + tangentX * tangentX + tangentY * tangentY), r = height / cosine;
-            const double ramp = std::clamp((cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.0, 1.0);
-            CAPTURE(x, y, cosine);
-            REQUIRE(texel.coverage == 1.0f);
-            REQUIRE(glm::length(texel.normal - Vec3(0, 1, 0)) < 1e-6f);
-            REQUIRE(texel.nDotL == Approx(cosine).epsilon(3e-6));
-            REQUIRE(rsm.projection.depthNear + rsm.depthLinear.at(x, y) * rsm.projection.depthRange() == Approx(r).epsilon(3e-6));
-            for (int k = 0; k < 3; ++k) {
-                const double expected = rho[k] * intensity[k] * cosine / (r * r) / kPiDouble * ramp * ramp;
-                REQUIRE(texel.radiance[k] == Approx(expected).epsilon(1e-4).margin(1e-5 * intensity[k] / (height * height)));
-            }
-            (ramp > 0 ? lit : dark) += 1;
-        }
-    // The cone is the circle inscribed in the map.
-    CHECK(double(lit) / (lit + dark) == Approx(kPiDouble / 4).margin(0.01));
-}
-
 TEST_CASE("RSM: a floor under a slanted sun reflects rho E cos / pi everywhere, at the depth of its distance along the axis", "[lrsm][rsm][eq2]")
 {
     const Vec3 direction = glm::normalize(Vec3(0.3f, -1, 0.5f)), irradiance(2, 3, 5), rho(0.2f, 0.5f, 0.9f);

@@ -1,15 +1,15 @@
+// Lookups are held against tents in double in apps/validate/equations/voxel_checks.cpp; here is what holds to the bit.
 #include "voxel/sample_opacity.h"
+
+#include "apps/validate/equations/synthetic_grids.h"
 
 #include "catch.h"
 
 #include <cstring>
-#include <random>
 
 using namespace lrsm;
 
 namespace {
-
-using DVec3 = std::array<double, 3>;
 
 struct Kind {
     OpacityAxes axes;
@@ -26,70 +26,9 @@ std::vector<Kind> allKinds()
     return kinds;
 }
 
-OpacityPyramid pyramidOf(const Kind& kind, int n, const std::function<bool(int, int, int)>& occupied)
+OpacityPyramid pyramidOf(const Kind& kind, BitGrid grid)
 {
-    BitGrid grid;
-    grid.frame.resolution = n;
-    const auto edge = std::size_t(BitGrid::bricksPerEdge(n));
-    grid.bricks.assign(edge * edge * edge, 0);
-    for (int z = 0; z < n; ++z)
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x)
-                if (occupied(x, y, z)) grid.bricks[grid.brickIndex(x, y, z)] |= std::uint64_t(1) << BitGrid::bitIndex(x, y, z);
-    VoxelSettings settings;
-    settings.resolution = n;
-    settings.axes = kind.axes;
-    settings.storage = kind.storage;
-    return buildPyramid(std::move(grid), settings);
-}
-
-OpacityPyramid randomPyramid(const Kind& kind, int n, double density, unsigned seed)
-{
-    std::mt19937 random(seed);
-    return pyramidOf(kind, n, [&](int, int, int) { return double(random()) * 0x1p-32 < density; });
-}
-
-double fractionOf(double t, FilterFraction fraction)
-{
-    return fraction == FilterFraction::fixed8 ? std::floor(t * 256.0 + 0.5) / 256.0 : t;
-}
-
-/// Eight weighted texels in double.
-DVec3 bruteLevel(const OpacityPyramid& pyramid, const Vec3& p, int level, FilterFraction fraction)
-{
-    const int n = pyramid.resolutionAt(level);
-    double t[3];
-    for (int i = 0; i < 3; ++i) t[i] = fractionOf(double(p[i]) / (1 << level) - 0.5, fraction);
-    DVec3 sum = {0, 0, 0};
-    for (int k = 0; k < 8; ++k) {
-        double weight = 1.0;
-        int c[3];
-        bool inside = true;
-        for (int i = 0; i < 3; ++i) {
-            const int up = (k >> i) & 1;
-            const double floor = std::floor(t[i]);
-            weight *= up ? t[i] - floor : 1.0 - (t[i] - floor);
-            c[i] = int(floor) + up;
-            inside = inside && c[i] >= 0 && c[i] < n;
-        }
-        if (!inside) continue;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int channel = pyramid.axes == OpacityAxes::directional && level > 0 ? axis : 0;
-            const double scale = pyramid.axes == OpacityAxes::directional ? 1.0 / double(1 << std::min(level, 3)) : 1.0;
-            sum[std::size_t(axis)] += weight * scale * double(pyramid.value(level, channel, c[0], c[1], c[2]));
-        }
-    }
-    return sum;
-}
-
-DVec3 bruteQuadrilinear(const OpacityPyramid& pyramid, const Vec3& p, float level, FilterFraction fraction)
-{
-    const double clamped = fractionOf(std::min(std::max(double(level), 0.0), double(pyramid.levels() - 1)), fraction);
-    const int lower = int(clamped), upper = std::min(lower + 1, pyramid.levels() - 1);
-    const DVec3 a = bruteLevel(pyramid, p, lower, fraction), b = bruteLevel(pyramid, p, upper, fraction);
-    DVec3 mix;
-    for (std::size_t i = 0; i < 3; ++i) mix[i] = a[i] + (clamped - lower) * (b[i] - a[i]);
-    return mix;
+    return lrsm::pyramidOf(std::move(grid), kind.axes, kind.storage);
 }
 
 bool sameBits(const Vec3& a, const Vec3& b)
@@ -97,51 +36,23 @@ bool sameBits(const Vec3& a, const Vec3& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-struct Random {
-    std::mt19937 engine{11};
-    float operator()(float low, float high) { return low + (high - low) * float(engine()) * 0x1p-32f; }
+struct Random : SearchRandom {
+    Random() : SearchRandom(11) {}
     Vec3 point(float low, float high)
     {
-        const float x = (*this)(low, high), y = (*this)(low, high), z = (*this)(low, high);
+        const float x = uniform(low, high), y = uniform(low, high), z = uniform(low, high);
         return {x, y, z};
     }
 };
 
 }  // namespace
 
-TEST_CASE("lookups equal a brute-force quadrilinear sum in double, border included", "[voxel][sampler]")
-{
-    for (const Kind& kind : allKinds()) {
-        for (const int n : {1, 2, 4, 16, 32}) {
-            for (const double density : {0.004, 0.3}) {
-                const OpacityPyramid pyramid = randomPyramid(kind, n, density, unsigned(n));
-                Random random;
-                double worst = 0.0;
-                for (int i = 0; i < 1500; ++i) {
-                    const Vec3 p = random.point(-3.0f, float(n) + 3.0f);
-                    const float level = random(-1.0f, float(pyramid.levels()) + 0.5f);
-                    const Vec3 got = sampleOpacity(pyramid, p, level, kind.fraction);
-                    const DVec3 expected = bruteQuadrilinear(pyramid, p, level, kind.fraction);
-                    for (int axis = 0; axis < 3; ++axis) worst = std::max(worst, std::abs(double(got[axis]) - expected[std::size_t(axis)]));
-
-                    const int whole = int(random.engine() % unsigned(pyramid.levels()));
-                    const Vec3 atLevel = sampleLevel(pyramid, p, whole, kind.fraction);
-                    const DVec3 expectedLevel = bruteLevel(pyramid, p, whole, kind.fraction);
-                    for (int axis = 0; axis < 3; ++axis) worst = std::max(worst, std::abs(double(atLevel[axis]) - expectedLevel[std::size_t(axis)]));
-                }
-                INFO(n << "^3");
-                CHECK(worst < 1.5e-6);  // float fractions of coordinates up to 35 voxels
-            }
-        }
-    }
-}
-
 TEST_CASE("the order of operations is fixed: x, y, z, level, then the division by 255; bit for bit", "[voxel][sampler][determinism]")
 {
     const auto lerp = [](float a, float b, float f) { return a + f * (b - a); };
     for (const Kind& kind : allKinds()) {
         if (kind.fraction == FilterFraction::fixed8) continue;
-        const OpacityPyramid pyramid = randomPyramid(kind, 32, 0.2, 8);
+        const OpacityPyramid pyramid = pyramidOf(kind, randomGrid(32, 0.2, 8));
         const float unit = kind.storage == Storage::gpu ? 255.0f : 1.0f;
         const auto blend = [&](const Vec3& p, int level, int axis) {
             const int n = pyramid.resolutionAt(level), channel = level > 0 && pyramid.channels() == 3 ? axis : 0;
@@ -164,7 +75,7 @@ TEST_CASE("the order of operations is fixed: x, y, z, level, then the division b
         int different = 0;
         for (int i = 0; i < 4000; ++i) {
             const Vec3 p = random.point(-1.0f, 33.0f);
-            const float level = random(0.0f, 4.99f);
+            const float level = random.uniform(0.0f, 4.99f);
             const int lower = int(level);
             Vec3 expected;
             for (int axis = 0; axis < 3; ++axis) expected[axis] = lerp(blend(p, lower, axis), blend(p, lower + 1, axis), level - float(lower)) / unit;
@@ -177,7 +88,7 @@ TEST_CASE("the order of operations is fixed: x, y, z, level, then the division b
 TEST_CASE("a texel's centre gives its stored value exactly; whole levels equal sampleLevel", "[voxel][sampler]")
 {
     for (const Kind& kind : allKinds()) {
-        const OpacityPyramid pyramid = randomPyramid(kind, 32, 0.1, 5);
+        const OpacityPyramid pyramid = pyramidOf(kind, randomGrid(32, 0.1, 5));
         int wrong = 0;
         for (int level = 0; level < pyramid.levels(); ++level) {
             const int n = pyramid.resolutionAt(level);
@@ -200,7 +111,7 @@ TEST_CASE("a texel's centre gives its stored value exactly; whole levels equal s
 TEST_CASE("a constant field stays constant away from the border", "[voxel][sampler]")
 {
     for (const Kind& kind : allKinds()) {
-        const OpacityPyramid pyramid = pyramidOf(kind, 32, [](int, int, int) { return true; });
+        const OpacityPyramid pyramid = pyramidOf(kind, gridOf(32, [](int, int, int) { return true; }));
         Random random;
         int wrong = 0;
         for (int i = 0; i < 2000; ++i) {
@@ -216,15 +127,15 @@ TEST_CASE("a constant field stays constant away from the border", "[voxel][sampl
 TEST_CASE("lookups stay within the texels they blend and are monotone from one texel to the next", "[voxel][sampler]")
 {
     for (const Kind& kind : allKinds()) {
-        const OpacityPyramid pyramid = randomPyramid(kind, 32, 0.15, 6);
+        const OpacityPyramid pyramid = pyramidOf(kind, randomGrid(32, 0.15, 6));
         Random random;
         int outside = 0, backwards = 0;
         for (int i = 0; i < 400; ++i) {
-            const int level = int(random.engine() % 4u), n = pyramid.resolutionAt(level);
-            const int axis = int(random.engine() % 3u);
+            const int level = int(random.word() % 4u), n = pyramid.resolutionAt(level);
+            const int axis = int(random.word() % 3u);
             const float size = float(1 << level);
             Vec3 p;
-            for (int k = 0; k < 3; ++k) p[k] = (float(random.engine() % unsigned(n)) + 0.5f) * size;
+            for (int k = 0; k < 3; ++k) p[k] = (float(random.word() % unsigned(n)) + 0.5f) * size;
             const Vec3 from = sampleLevel(pyramid, p, level, kind.fraction);
             Vec3 end = p;
             end[axis] += size;
@@ -245,7 +156,7 @@ TEST_CASE("lookups stay within the texels they blend and are monotone from one t
         CHECK(backwards == 0);
 
         for (int i = 0; i < 4000; ++i) {
-            const Vec3 got = sampleOpacity(pyramid, random.point(-2.0f, 34.0f), random(0.0f, 5.0f), kind.fraction);
+            const Vec3 got = sampleOpacity(pyramid, random.point(-2.0f, 34.0f), random.uniform(0.0f, 5.0f), kind.fraction);
             for (int c = 0; c < 3; ++c) outside += got[c] < 0.0f || got[c] > 1.0f;
         }
         CHECK(outside == 0);
@@ -255,7 +166,7 @@ TEST_CASE("lookups stay within the texels they blend and are monotone from one t
 TEST_CASE("fixed8 knows 256 positions between two texels", "[voxel][sampler]")
 {
     const Kind kind{OpacityAxes::isotropic, Storage::float32, FilterFraction::fixed8};
-    const OpacityPyramid pyramid = pyramidOf(kind, 8, [](int x, int, int) { return x >= 4; });
+    const OpacityPyramid pyramid = pyramidOf(kind, gridOf(8, [](int x, int, int) { return x >= 4; }));
     int wrong = 0;
     for (int i = 0; i <= 4096; ++i) {
         const float got = sampleLevel(pyramid, Vec3(3.5f + float(i) / 4096.0f, 4.5f, 4.5f), 0, kind.fraction).x;
@@ -269,7 +180,7 @@ TEST_CASE("the empty-space shortcut changes no bit and finds what is empty", "[v
     for (const Kind& kind : allKinds()) {
         for (const int n : {2, 8, 64}) {
             for (const double density : {0.0, 4.0 / (double(n) * n * n), 0.002}) {
-                const OpacityPyramid fast = randomPyramid(kind, n, density, unsigned(n) + 3u);
+                const OpacityPyramid fast = pyramidOf(kind, randomGrid(n, density, unsigned(n) + 3u));
                 OpacityPyramid slow = fast;
                 std::fill(slow.emptyLevels.begin(), slow.emptyLevels.end(), std::uint8_t(0));
                 Random random;
@@ -277,7 +188,7 @@ TEST_CASE("the empty-space shortcut changes no bit and finds what is empty", "[v
                 for (int i = 0; i < 1500; ++i) {
                     Vec3 p = random.point(-1.0f, float(n) + 1.0f);
                     if (i % 3 == 0) p = glm::round(p * 2.0f) * 0.5f;  // exactly on texel edges and centres
-                    const float level = i % 2 ? random(0.0f, float(fast.levels() - 1)) : float(i / 2 % fast.levels());
+                    const float level = i % 2 ? random.uniform(0.0f, float(fast.levels() - 1)) : float(i / 2 % fast.levels());
                     different += !sameBits(sampleOpacity(fast, p, level, kind.fraction), sampleOpacity(slow, p, level, kind.fraction));
                 }
                 INFO(n << "^3, density " << density);
@@ -288,7 +199,7 @@ TEST_CASE("the empty-space shortcut changes no bit and finds what is empty", "[v
 
     // One voxel in a corner of 64^3: a point 20 voxels away is known to be empty up to level 3 (8-voxel texels), not at level 5.
     const Kind kind{OpacityAxes::isotropic, Storage::gpu, FilterFraction::exact};
-    const OpacityPyramid lone = pyramidOf(kind, 64, [](int x, int y, int z) { return x == 0 && y == 0 && z == 0; });
+    const OpacityPyramid lone = pyramidOf(kind, gridOf(64, [](int x, int y, int z) { return x == 0 && y == 0 && z == 0; }));
     withOpacitySampler(lone, FilterFraction::exact, [](const auto& sample) {
         CHECK(sample.empty(Vec3(20.0f), 3.0f));
         CHECK_FALSE(sample.empty(Vec3(20.0f), 5.0f));
@@ -303,7 +214,7 @@ TEST_CASE("far, infinite and NaN coordinates read the border", "[voxel][sampler]
 {
     const float bad[] = {1e30f, -1e30f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(), 40.0f, -9.0f};
     for (const Kind& kind : allKinds()) {
-        const OpacityPyramid pyramid = pyramidOf(kind, 16, [](int, int, int) { return true; });
+        const OpacityPyramid pyramid = pyramidOf(kind, gridOf(16, [](int, int, int) { return true; }));
         for (const float b : bad)
             for (int axis = 0; axis < 3; ++axis) {
                 Vec3 p(8.0f);

@@ -5,9 +5,6 @@
 namespace lrsm::twin {
 namespace {
 
-/// What UNORM16 moments resolve (docs/equations.md), written here a second time.
-constexpr double kFloor = 2.5e-5;
-
 double tent(double distance)
 {
     return std::max(0.0, 1.0 - std::abs(distance));
@@ -54,7 +51,12 @@ double level(double diameterMetres, double rsmTexelSize, double bias, double min
     return std::max(std::log2(diameterMetres) - std::log2(rsmTexelSize) - 1.0 + bias, minLevel);
 }
 
-double decay(const LayerRange& range, double zc)
+Slice sliceOf(const LayerRange& range)
+{
+    return {.depthMin = range.depthMin, .depthMax = range.depthMax, .delta = range.delta, .decayAtMin = range.decayAtMin, .decayAtMax = range.decayAtMax};
+}
+
+double decay(const Slice& range, double zc)
 {
     const double lo = range.depthMin, hi = range.depthMax, delta = range.delta;
     const auto k = [](double t) { return t <= 0.0 ? 0.0 : t >= 1.0 ? 1.0 : 3.0 * t * t - 2.0 * t * t * t; };
@@ -93,7 +95,7 @@ Filtered sample(const Lrsm& lrsm, int layer, double u, double v, double level)
     return sum;
 }
 
-Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone, const ConeSettings& settings)
+Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone, const ConeSettings& settings, double varianceFloor)
 {
     Outgoing result;
     if (!p.valid) return result;
@@ -132,7 +134,7 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
             result.toJump = std::min(result.toJump, std::abs(gap));
             if (gap < 0.0) continue;
         } else {
-            f = decay(bounds, p.depth);
+            f = decay(sliceOf(bounds), p.depth);
             for (const double edge : {double(bounds.depthMin), double(bounds.depthMax)}) result.toJump = std::min(result.toJump, std::abs(p.depth - edge));
         }
         if (!(f > 0.0)) continue;
@@ -143,7 +145,7 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
         if (!(n > 0.0)) continue;
         if (settings.backface == Backface::step) n = 1.0;
 
-        const double mu = t.depth / t.depthAlpha, sigma2 = std::max(t.depthSquared / t.depthAlpha - mu * mu, kFloor);
+        const double mu = t.depth / t.depthAlpha, sigma2 = std::max(t.depthSquared / t.depthAlpha - mu * mu, varianceFloor);
         const double width = double(bounds.depthMax) - double(bounds.depthMin);
         const double v = static_cast<double>(oracle::visibility(mu, sigma2, (p.depth - double(bounds.depthMin)) / width, window / width));
         result.radiance += (f * v * n) * t.radiance;

@@ -17,8 +17,15 @@ Projected project(const LightProjection& projection, const DVec3& pWorld);
 /// Sec. 5: log2 of the diameter in LRSM texels, two RSM texels wide each; biased, at least minLevel.
 double level(double diameterMetres, double rsmTexelSize, double bias, double minLevel);
 
+/// A LayerRange's depths, in double.
+struct Slice {
+    double depthMin = 0.0, depthMax = 1.0, delta = 0.0;
+    bool decayAtMin = false, decayAtMax = false;
+};
+Slice sliceOf(const LayerRange& range);
+
 /// Eq. 15 with k = smoothstep. Half-open where a neighbour begins, closed at the far end of all.
-double decay(const LayerRange& range, double zc);
+double decay(const Slice& slice, double zc);
 
 /// Weight of texel (x, y) of a level in a trilinear lookup: tents about the texel's centre and about the level.
 double weight(const Lrsm& lrsm, int lod, int x, int y, double u, double v, double level);
@@ -36,7 +43,9 @@ struct Outgoing {
     /// rounding, kernel and twin may stand on different sides.
     double toJump = 1.0;
 };
+/// What UNORM16 moments resolve (docs/equations.md), written here a second time.
+inline constexpr double kFloor = 2.5e-5;
 /// From a projection as given: what its own error does to a sample depends on how steep the map is there, and is no fault of Algorithm 1.
-Outgoing algorithm1(const Lrsm& lrsm, const Projected& at, const ConeSample& sample, const ConeSettings& settings);
+Outgoing algorithm1(const Lrsm& lrsm, const Projected& at, const ConeSample& sample, const ConeSettings& settings, double varianceFloor = kFloor);
 
 }  // namespace lrsm::twin

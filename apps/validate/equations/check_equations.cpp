@@ -54,14 +54,14 @@ std::string equationsMarkdown(const EquationReport& report)
         for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
         return text;
     };
-    std::string table = "| equation | function | oracle | domain | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-    for (const EquationCheck& check : report.checks) {
-        const bool exact = check.boundName == "exact";
-        table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.oracle) + " | " + cell(check.domain) + " | " +
-                 cell(check.errorKind) + " | " + (exact ? "exact" : "`" + check.boundName + "`") + " | " + (exact ? "0" : number(check.bound)) + " | " +
-                 number(check.worst) + " |\n";
-    }
-    return table;
+    std::string table = "| equation | function | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- |\n", exact;
+    for (const EquationCheck& check : report.checks)
+        if (check.boundName == "exact")
+            exact += (exact.empty() ? "Exact: " : "; ") + check.function + " (" + check.equation + ")";
+        else
+            table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.errorKind) + " | `" + check.boundName + "` | " +
+                     number(check.bound) + " | " + number(check.worst) + " |\n";
+    return table + "\n" + exact + ".\n";
 }
 
 std::vector<std::string> equationNames()

@@ -64,8 +64,7 @@ struct EquationOptions {
     std::function<void(const std::string&, double)> progress;
 };
 
-/// The checks as the table of docs/equations.md: equation, function, oracle, domain, constant, bound, measured. A test holds all columns but the last
-/// against the page.
+/// The checks as docs/equations.md has them: a table, and a line of those that are exact. A test holds all but what was measured against the page.
 std::string equationsMarkdown(const EquationReport& report);
 
 /// Names that EquationOptions::equation takes, in the report's order.

@@ -40,6 +40,12 @@ class CheckRun {
     EquationReport& report_;
 };
 
+/// A row in which every result must be the oracle's.
+inline EquationCheck exactCheck(const std::string& equation, const std::string& function, const std::string& oracle, const std::string& domain)
+{
+    return {.equation = equation, .function = function, .oracle = oracle, .domain = domain, .boundName = "exact", .errorKind = "wrong results"};
+}
+
 /// Median time of call(i), i running over [0, inputs), in nanoseconds. What the calls return is summed into a volatile, so that none is left out.
 template <class Call>
 double medianNanoseconds(std::size_t inputs, const Call& call)

@@ -130,27 +130,13 @@ void checkCounts(CheckRun& run)
         }
         return ringCounts(count) == expected ? 0.0 : 1.0;
     });
-    run.add({.equation = "fig7",
-             .function = "ringCounts",
-             .oracle = "shares of solid angle in double",
-             .domain = "1 .. 256 cones",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            counts, "count = 1 + " + exactText(counts.input[0]));
+    run.add(exactCheck("fig7", "ringCounts", "shares of solid angle in double", "1 .. 256 cones"), counts, "count = 1 + " + exactText(counts.input[0]));
     const auto pattern = exhaust(64, [](std::uint64_t i) {
         constexpr int kBayer[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
         const int x = static_cast<int>(i % 8), y = static_cast<int>(i / 8);
         return rotationOfPixel(x, y, Rotation::strata) == kBayer[y % 4][x % 4] && rotationOfPixel(x, y, Rotation::none) == 0 ? 0.0 : 1.0;
     });
-    run.add({.equation = "fig7",
-             .function = "rotationOfPixel",
-             .oracle = "the 4x4 ordered-dither matrix, written out",
-             .domain = "8x8 pixels",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            pattern, "pixel " + exactText(pattern.input[0]));
+    run.add(exactCheck("fig7", "rotationOfPixel", "the 4x4 ordered-dither matrix, written out", "8x8 pixels"), pattern, "pixel " + exactText(pattern.input[0]));
 }
 
 void checkSpecular(CheckRun& run)

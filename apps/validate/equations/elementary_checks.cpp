@@ -39,14 +39,7 @@ void checkFastLog2(CheckRun& run)
             worst, "x = " + exactText(worstInput));
 
     const auto powers = exhaust(254, [](std::uint64_t i) { return fastLog2(std::ldexp(1.0f, int(i) - 126)) == float(int(i) - 126) ? 0.0 : 1.0; });
-    run.add({.equation = "base",
-             .function = "fastLog2, powers of two",
-             .oracle = "the exponent",
-             .domain = "2^-126 .. 2^127",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            powers, "x = 2^(i - 126), i = " + exactText(powers.input[0]));
+    run.add(exactCheck("base", "fastLog2, powers of two", "the exponent", "2^-126 .. 2^127"), powers, "x = 2^(i - 126), i = " + exactText(powers.input[0]));
 }
 
 void checkFastExp2(CheckRun& run)
@@ -74,14 +67,8 @@ void checkFastExp2(CheckRun& run)
                         kAbove[3] = {128.0f, 1e30f, std::numeric_limits<float>::infinity()};
         return i < 257 ? (fastExp2(kBelow[i - 254]) == 0.0f ? 0.0 : 1.0) : (std::isinf(fastExp2(kAbove[i - 257])) ? 0.0 : 1.0);
     });
-    run.add({.equation = "base",
-             .function = "fastExp2, whole numbers and saturation",
-             .oracle = "ldexp",
-             .domain = "-126 .. 127; beyond: 0, infinity",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            edges, "case " + exactText(edges.input[0]));
+    run.add(exactCheck("base", "fastExp2, whole numbers and saturation", "ldexp", "-126 .. 127; beyond: 0, infinity"), edges,
+            "case " + exactText(edges.input[0]));
 }
 
 /// One double function against 50 digits. The search itself runs on these, at some 20 us a call.

@@ -36,14 +36,7 @@ void checkHalf(CheckRun& run)
         if ((i & 0x7fffu) > 0x7c00u) return std::isnan(value) ? 0.0 : 1.0;
         return double(value) == valueOfHalf(static_cast<std::uint32_t>(i)) && std::signbit(value) == ((i & 0x8000u) != 0) ? 0.0 : 1.0;
     });
-    run.add({.equation = "table1",
-             .function = "floatFromHalf",
-             .oracle = "the format's definition, in double",
-             .domain = "all 65536 patterns",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            decode, "bits = " + exactText(decode.input[0]));
+    run.add(exactCheck("table1", "floatFromHalf", "the format's definition, in double", "all 65536 patterns"), decode, "bits = " + exactText(decode.input[0]));
 
     for (const HalfRounding rounding : {HalfRounding::d3d, HalfRounding::nearestEven}) {
         const auto wrong = [rounding](float x) {
@@ -76,14 +69,7 @@ void checkHalf(CheckRun& run)
         if (i / 2 == 0) return std::isnan(floatFromHalf(halfFromFloat(std::numeric_limits<float>::quiet_NaN(), rounding))) ? 0.0 : 1.0;
         return floatFromHalf(halfFromFloat(i / 2 == 1 ? infinity : -infinity, rounding)) == (i / 2 == 1 ? infinity : -infinity) ? 0.0 : 1.0;
     });
-    run.add({.equation = "table1",
-             .function = "halfFromFloat, NaN and infinity",
-             .oracle = "D3D11.3 3.2.2",
-             .domain = "both roundings",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            special, "case " + exactText(special.input[0]));
+    run.add(exactCheck("table1", "halfFromFloat, NaN and infinity", "D3D11.3 3.2.2", "both roundings"), special, "case " + exactText(special.input[0]));
 
     const auto counted = exhaust(8, [](std::uint64_t i) {
         constexpr float kValues[4] = {65504.0f, 65504.004f, 65536.0f, -65505.0f};
@@ -92,14 +78,8 @@ void checkHalf(CheckRun& run)
         if (stored != std::copysign(65504.0f, kValues[i / 2])) return 1.0;
         return counts.halfSaturations == (i / 2 ? 1u : 0u) && counts.nans == 0 ? 0.0 : 1.0;
     });
-    run.add({.equation = "table1",
-             .function = "roundToHalf, saturation",
-             .oracle = "65504, counted if finite and beyond",
-             .domain = "65504 and its neighbour, both signs",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            counted, "case " + exactText(counted.input[0]));
+    run.add(exactCheck("table1", "roundToHalf, saturation", "65504, counted if finite and beyond", "65504 and its neighbour, both signs"), counted,
+            "case " + exactText(counted.input[0]));
 }
 
 /// Codes of an n-bit UNORM, and the floats beside the exact edge (k + 1/2) / (2^n - 1) between two of them.
@@ -110,14 +90,8 @@ void checkUnorm(CheckRun& run, const char* name, unsigned codes, double slack, c
         const float value = decode(i);
         return double(value) == double(static_cast<float>(double(i) / (codes - 1))) && encode(value) == i ? 0.0 : 1.0;
     });
-    run.add({.equation = "table1",
-             .function = std::string("floatFrom") + name,
-             .oracle = "division in double, rounded once",
-             .domain = "all codes, and back",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            roundTrip, "code = " + exactText(roundTrip.input[0]));
+    run.add(exactCheck("table1", std::string("floatFrom") + name, "division in double, rounded once", "all codes, and back"), roundTrip,
+            "code = " + exactText(roundTrip.input[0]));
 
     // c (2^n - 1) + 1/2 is itself rounded to float: an input next to an edge may fall on its other side.
     const auto error = [&](float x) {

@@ -176,14 +176,8 @@ void checkStep(CheckRun& run)
         const float v = gaussianVisibility(phi, 0.5f, sigma2, zc, moveByUlps(0.25f, ulps));
         return v == (ulps < 0 ? 0.0f : ulps > 0 ? 1.0f : 0.5f) ? 0.0 : 1.0;
     });
-    run.add({.equation = "12",
-             .function = "gaussianVisibility, variance <= 0",
-             .oracle = "Heaviside, 1/2 on the edge",
-             .domain = "r_c within 2 ULP of |z_c - mu|",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            wrong, "case " + exactText(wrong.input[0]));
+    run.add(exactCheck("12", "gaussianVisibility, variance <= 0", "Heaviside, 1/2 on the edge", "r_c within 2 ULP of |z_c - mu|"), wrong,
+            "case " + exactText(wrong.input[0]));
 }
 
 void addCurves(CheckRun& run, const std::vector<EquationTrade>& tables)

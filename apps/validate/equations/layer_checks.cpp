@@ -1,9 +1,9 @@
 // Sec. 4.2 and 4.3: layers, their weights (Eq. 13-15), and the means that their mip chains hold (Eq. 6, 8, 10, 11).
 #include "lrsm/layers.h"
 
-#include "apps/validate/equations/algorithm1_twin.h"
 #include "apps/validate/equations/check_run.h"
 #include "apps/validate/equations/format_oracle.h"
+#include "apps/validate/equations/layer_model.h"
 #include "apps/validate/equations/synthetic_maps.h"
 
 namespace lrsm {
@@ -18,16 +18,6 @@ void include(MapWorst& worst, double error, std::string& at, const std::string& 
     worst.sum += error;
     const double seen = error != error ? std::numeric_limits<double>::infinity() : error;
     if (seen > worst.error) worst.error = seen, at = where;
-}
-
-LayerSettings layersOf(int depthLayers, int normalLayers, float overlap, Storage storage = Storage::float32)
-{
-    LayerSettings settings;
-    settings.depthLayers = depthLayers;
-    settings.normalLayers = normalLayers;
-    settings.overlap = overlap;
-    settings.storage = storage;
-    return settings;
 }
 
 std::string text(const LayerSettings& s)
@@ -48,33 +38,24 @@ void checkPartition(CheckRun& run)
         settings.outermostDecay = random.word() % 3 == 0;
         const float a = random.uniform(0.0f, 1.0f), b = random.word() % 8 ? random.uniform(0.0f, 1.0f) : a;
         const Rsm rsm = syntheticRsm(8, 502 + static_cast<std::uint32_t>(draw), 1.0f, std::min(a, b), std::max(a, b));
-        double nearest = 1.0, farthest = 0.0;
-        for (const float z : rsm.depthLinear.texels) nearest = std::min(nearest, double(z)), farthest = std::max(farthest, double(z));
-        if (!settings.fitRanges) nearest = 0.0, farthest = 1.0;
-        const double thinnest = 1.0 / 65536.0, middle = 0.5 * (nearest + farthest);
-        if (farthest - nearest < thinnest) nearest = middle - 0.5 * thinnest, farthest = middle + 0.5 * thinnest;
-
+        const LayerModel model(rsm, settings);
         const auto ranges = partition(rsm, settings);
-        const double slice = (farthest - nearest) / settings.depthLayers, delta = double(settings.overlap) * slice;
         double error = ranges.size() == std::size_t(settings.depthLayers * settings.normalLayers) ? 0.0 : 1.0;
         for (std::size_t i = 0; i < ranges.size() && error < 1.0; ++i) {
             const int depth = static_cast<int>(i) / settings.normalLayers, normal = static_cast<int>(i) % settings.normalLayers;
-            const bool first = depth == 0, last = depth == settings.depthLayers - 1;
-            const double reach = settings.outermostDecay ? 0.0 : delta;
-            const double low = first ? nearest - reach : nearest + slice * depth - 0.5 * delta,
-                         high = last ? farthest + reach : nearest + slice * (depth + 1) + 0.5 * delta;
+            const bool last = depth == settings.depthLayers - 1;
             const LayerRange& r = ranges[i];
-            error = std::max({error, std::abs(double(r.depthMin) - low), std::abs(double(r.depthMax) - high), std::abs(double(r.delta) - delta),
-                              std::abs(double(r.nDotLMin) - double(normal) / settings.normalLayers),
+            const twin::Slice slice = model.slice(depth);
+            error = std::max({error, std::abs(double(r.depthMin) - slice.depthMin), std::abs(double(r.depthMax) - slice.depthMax),
+                              std::abs(double(r.delta) - slice.delta), std::abs(double(r.nDotLMin) - double(normal) / settings.normalLayers),
                               std::abs(double(r.nDotLMax) - double(normal + 1) / settings.normalLayers)});
-            const bool decays = settings.outermostDecay && r.delta > 0.0f;
-            if (r.decayAtMin != (!first || decays) || r.decayAtMax != (!last || decays)) error = 1.0;
+            if (r.decayAtMin != slice.decayAtMin || r.decayAtMax != slice.decayAtMax) error = 1.0;
             if (!last) {
                 const LayerRange& next = ranges[i + std::size_t(settings.normalLayers)];
                 include(overlaps, double(r.depthMax) - double(next.depthMin) == double(r.delta) ? 0.0 : 1.0, overlapAt, text(settings));
             }
         }
-        include(worst, error, at, text(settings) + ", depths " + exactText(nearest) + " .. " + exactText(farthest));
+        include(worst, error, at, text(settings) + ", depths " + exactText(a) + ", " + exactText(b));
     }
     run.add({.equation = "13",
              .function = "partition, edges",
@@ -84,14 +65,7 @@ void checkPartition(CheckRun& run)
              .errorKind = "absolute, linear depth",
              .bound = double(kPartitionMaxError)},
             worst, at);
-    run.add({.equation = "15",
-             .function = "partition, overlap is delta",
-             .oracle = "zMax of one layer - zMin of the next, in double",
-             .domain = "as above",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            overlaps, overlapAt);
+    run.add(exactCheck("15", "partition, overlap is delta", "zMax of one layer - zMin of the next, in double", "as above"), overlaps, overlapAt);
 }
 
 /// A map of one depth still gets a range to divide by, centred on it.
@@ -134,7 +108,7 @@ void checkDecay(CheckRun& run)
         [&](const auto& in) {
             const LayerRange r = rangeOf(in);
             const float z = r.depthMin + (r.depthMax - r.depthMin) * in[3];
-            return std::abs(double(decay(r, z)) - twin::decay(r, double(z)));
+            return std::abs(double(decay(r, z)) - twin::decay(twin::sliceOf(r), double(z)));
         },
         511);
     const LayerRange r = rangeOf(worst.input);
@@ -162,14 +136,8 @@ void checkDecay(CheckRun& run)
         const bool inside = atMax ? ulps < 0 || (ulps == 0 && !e.decayAtMax) : ulps >= 0;
         return decay(e, z) == (inside ? 1.0f : 0.0f) ? 0.0 : 1.0;
     });
-    run.add({.equation = "15",
-             .function = "decay, ends without overlap",
-             .oracle = "half-open intervals, the last one closed",
-             .domain = "z_c within 2 ULP of either end",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            ends, "case " + exactText(ends.input[0]));
+    run.add(exactCheck("15", "decay, ends without overlap", "half-open intervals, the last one closed", "z_c within 2 ULP of either end"), ends,
+            "case " + exactText(ends.input[0]));
 }
 
 /// Eq. 15 over all layers: no light is lost or counted twice at any depth of the map.
@@ -326,13 +294,13 @@ void checkStorage(CheckRun& run)
         LayerSettings settings = layersOf(2, 2, 0.2f, Storage::gpu);
         settings.halfRounding = rounding;
         const Rsm rsm = syntheticRsm(run.draws(1) > 1 ? 128 : 64, 541);
-        const Lrsm lrsm = buildLrsm(rsm, settings);
+        const Lrsm lrsm = buildLrsm(rsm, settings), wide = buildLrsm(rsm, layersOf(2, 2, 0.2f));
         forEachTexel(lrsm, [&](int layer, int lod, int x, int y, const LrsmTexel& t) {
-            if (lod == 0) return;
-            const int n = lrsm.resolutionAt(lod - 1);
-            const LrsmTexel* child = lrsm.level(layer, lod - 1) + (2 * y) * n + 2 * x;
+            // The base level from the float means, every other from the four texels stored below.
+            const int n = lod ? lrsm.resolutionAt(lod - 1) : lrsm.baseResolution;
+            const LrsmTexel* child = lod ? lrsm.level(layer, lod - 1) + (2 * y) * n + 2 * x : wide.level(layer, 0) + y * n + x;
             const auto mean = [&](auto part, int c) {
-                return 0.25f * (((child[0].*part)[c] + (child[1].*part)[c]) + ((child[n].*part)[c] + (child[n + 1].*part)[c]));
+                return lod ? 0.25f * (((child[0].*part)[c] + (child[1].*part)[c]) + ((child[n].*part)[c] + (child[n + 1].*part)[c])) : (child->*part)[c];
             };
             double bad = 0.0;
             for (int c = 0; c < 4; ++c) {
@@ -342,13 +310,8 @@ void checkStorage(CheckRun& run)
             }
             include(wrong, bad, at, bad > wrong.error ? texelText(settings, layer, lod, x, y) : std::string());
         });
-        run.add({.equation = "table1",
-                 .function = std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
-                 .oracle = "conversions in double of the float mean of the stored children",
-                 .domain = "a random map of 128^2, 2 x 2 layers, all levels",
-                 .boundName = "exact",
-                 .errorKind = "wrong results",
-                 .bound = 0.0},
+        run.add(exactCheck("table1", std::string("buildLrsm, gpu, half ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
+                           "conversions in double of the float mean of the stored children", "a random map of 128^2, 2 x 2 layers, all levels"),
                 wrong, at);
     }
 }

@@ -16,17 +16,15 @@ constexpr double kLargestRadiance = 3.0;
 /// A wavy lit surface about y = 0, smooth in every attribute: nothing but the march's own arithmetic is under test.
 Rsm wavyMap(const LightProjection& projection)
 {
-    Rsm rsm = syntheticRsm(projection.resolution, 701, 0.0f);
-    rsm.projection = projection;
     const int n = projection.resolution;
-    for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x) {
-            const double a = 6.2831853 * x / n, b = 6.2831853 * y / n;
-            const Vec3 normal = glm::normalize(Vec3(float(0.3 * std::cos(a)), 1.0f, float(0.3 * std::sin(b))));
-            rsm.texels.at(x, y) = {Vec3(float(2.0 + std::sin(a)), float(1.0 + 0.5 * std::cos(b)), 1.0f), 1.0f, normal, normal.y};
-            rsm.depthLinear.at(x, y) = static_cast<float>(0.5 + 0.03 * std::sin(a) + 0.02 * std::cos(b));
-        }
-    return rsm;
+    return syntheticMap(projection, [n](int x, int y) {
+        const double a = 6.2831853 * x / n, b = 6.2831853 * y / n;
+        const Vec3 normal = glm::normalize(Vec3(float(0.3 * std::cos(a)), 1.0f, float(0.3 * std::sin(b))));
+        return MapTexel{.depth = static_cast<float>(0.5 + 0.03 * std::sin(a) + 0.02 * std::cos(b)),
+                        .radiance = Vec3(float(2.0 + std::sin(a)), float(1.0 + 0.5 * std::cos(b)), 1.0f),
+                        .normal = normal,
+                        .nDotL = normal.y};
+    });
 }
 
 /// The map's middle and reach are those of the grid: 16 m about the origin.
@@ -96,10 +94,7 @@ struct MarchWorld {
     {
         opacity.base.frame = {Vec3(-0.5f * kVoxelSize * kResolution), kVoxelSize, kResolution};
         opacity.axes = c.axes;
-        LayerSettings layers;
-        layers.depthLayers = c.depthLayers;
-        layers.normalLayers = 1;
-        layers.storage = Storage::float32;
+        LayerSettings layers = layersOf(c.depthLayers, 1);
         layers.fitRanges = c.fitRanges;
         lrsms.push_back(buildLrsm(wavyMap(lightOf(c.spot)), layers));
         if (c.depthLayers == 2) lrsms.push_back(buildLrsm(wavyMap(lightOf(false)), layers));
@@ -206,14 +201,7 @@ void checkStepOpacity(CheckRun& run)
     settings.opacity = OpacityModel::none;
     const auto plain =
         exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
-    run.add({.equation = "1",
-             .function = "stepOpacity, opacity = none",
-             .oracle = "min(a, 1)",
-             .domain = "a 0 .. 1.5",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            plain, "i = " + exactText(plain.input[0]));
+    run.add(exactCheck("1", "stepOpacity, opacity = none", "min(a, 1)", "a 0 .. 1.5"), plain, "i = " + exactText(plain.input[0]));
 
     ConeSettings exponential;
     exponential.transmittance = TransmittanceModel::exponential;

@@ -87,9 +87,11 @@ void checkFootprint(CheckRun& run)
             }
             // The level's own fraction.
             const float level = std::floor(in[2] * 256.0f) / 256.0f;
-            const LrsmFootprint atLevel = makeFootprint(lrsm, 0.4f, 0.6f, level, FilterFraction::fixed8),
-                                nearLevel = makeFootprint(lrsm, 0.4f, 0.6f, level + 0.497f / 256.0f, FilterFraction::fixed8);
-            for (int tap = 0; tap < atLevel.taps; ++tap) worst = std::max(worst, std::abs(double(atLevel.weight[tap]) - double(nearLevel.weight[tap])));
+            const LrsmFootprint atLevel = makeFootprint(lrsm, 0.4f, 0.6f, level, FilterFraction::fixed8);
+            for (const float aside : {-0.497f, 0.497f}) {
+                const LrsmFootprint nearLevel = makeFootprint(lrsm, 0.4f, 0.6f, level + aside / 256.0f, FilterFraction::fixed8);
+                for (int tap = 0; tap < atLevel.taps; ++tap) worst = std::max(worst, std::abs(double(atLevel.weight[tap]) - double(nearLevel.weight[tap])));
+            }
             return std::max(worst, footprintError(lrsm, (std::floor(u * 8.0f) + 0.5f) / 8.0f, 0.5f, std::min(level, 9.0f), FilterFraction::fixed8));
         },
         408);
@@ -135,11 +137,7 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
     std::string at;
     int index = 0;
     for (const Choice& choice : choicesOf(selection)) {
-        LayerSettings layers;
-        layers.depthLayers = choice.depthLayers;
-        layers.normalLayers = choice.normalLayers;
-        layers.overlap = selection == LayerSelection::centre ? 0.2f : 0.0f;
-        layers.storage = choice.storage;
+        const LayerSettings layers = layersOf(choice.depthLayers, choice.normalLayers, selection == LayerSelection::centre ? 0.2f : 0.0f, choice.storage);
         Rsm rsm = syntheticRsm(64, 420);
         rsm.projection = choice.spot ? spotOverCube(64) : sunOverCube(64);
         const Lrsm lrsm = buildLrsm(rsm, layers);
@@ -182,15 +180,7 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
 /// Eq. 5 on a wall of one texel value: R, V, N multiply.
 void checkProduct(CheckRun& run)
 {
-    Rsm rsm = syntheticRsm(32, 430, 0.0f);
-    rsm.projection = sunOverCube(32);
-    for (RsmTexel& texel : rsm.texels.texels) texel = {Vec3(2.0f, 1.0f, 0.5f), 1.0f, Vec3(0.0f, 1.0f, 0.0f), 1.0f};
-    for (float& depth : rsm.depthLinear.texels) depth = 0.5f;
-    LayerSettings layers;
-    layers.fitRanges = false;
-    layers.depthLayers = layers.normalLayers = 1;
-    layers.storage = Storage::float32;
-    const Lrsm lrsm = buildLrsm(rsm, layers);
+    const Lrsm lrsm = buildLrsm(flatMap(sunOverCube(32), {.radiance = Vec3(2.0f, 1.0f, 0.5f), .normal = Vec3(0.0f, 1.0f, 0.0f)}), oneLayer());
     ConeSettings cones;
     cones.backface = Backface::cosine;
     const NormalCdf phi;
@@ -228,16 +218,8 @@ void checkProduct(CheckRun& run)
 /// The map's own edge belongs to it; a hundredth of it beyond does not, nor does anything behind a spot.
 void checkMapEdges(CheckRun& run)
 {
-    Rsm rsm = syntheticRsm(32, 440, 0.0f);
-    for (RsmTexel& texel : rsm.texels.texels) texel = {Vec3(1.0f), 1.0f, Vec3(0.0f, 1.0f, 0.0f), 1.0f};
-    for (float& depth : rsm.depthLinear.texels) depth = 0.5f;
-    LayerSettings layers;
-    layers.fitRanges = false;
-    layers.depthLayers = layers.normalLayers = 1;
-    rsm.projection = sunOverCube(32);
-    const Lrsm sun = buildLrsm(rsm, layers);
-    rsm.projection = spotOverCube(32);
-    const Lrsm spot = buildLrsm(rsm, layers);
+    const MapTexel floor{.normal = Vec3(0.0f, 1.0f, 0.0f)};
+    const Lrsm sun = buildLrsm(flatMap(sunOverCube(32), floor), oneLayer()), spot = buildLrsm(flatMap(spotOverCube(32), floor), oneLayer());
     const NormalCdf phi;
     const auto wrong = exhaust(13, [&](std::uint64_t i) {
         if (i == 12)
@@ -248,14 +230,9 @@ void checkMapEdges(CheckRun& run)
         const Vec3 centre = i / 2 % 2 ? Vec3(reach, 0.0f, 0.0f) : Vec3(0.0f, 0.0f, reach);
         return (sampleLrsm(sun, {centre, 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, ConeSettings{}, phi).x > 0.0f) == (i / 4 != 1) ? 0.0 : 1.0;
     });
-    run.add({.equation = "5",
-             .function = "sampleLrsm, the map's edges",
-             .oracle = "lit on the edge and inside, 0 beyond and behind the light",
-             .domain = "all four edges, and 1/500 to either side",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            wrong, "case " + exactText(wrong.input[0]));
+    run.add(
+        exactCheck("5", "sampleLrsm, the map's edges", "lit on the edge and inside, 0 beyond and behind the light", "all four edges, and 1/500 to either side"),
+        wrong, "case " + exactText(wrong.input[0]));
 }
 
 }  // namespace

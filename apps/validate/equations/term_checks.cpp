@@ -52,14 +52,7 @@ void checkNormalTerm(CheckRun& run)
         const double exact = mode == Backface::cosine ? double(n) : n > 0.0f ? 1.0 : 0.0;
         return double(backfaceWeight(n, mode)) == exact ? 0.0 : 1.0;
     });
-    run.add({.equation = "8",
-             .function = "backfaceWeight",
-             .oracle = "N, H(N)",
-             .domain = "N in [0, 1], both modes",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            weights, "case " + exactText(weights.input[0]));
+    run.add(exactCheck("8", "backfaceWeight", "N, H(N)", "N in [0, 1], both modes"), weights, "case " + exactText(weights.input[0]));
 }
 
 /// Eq. 10 and 11, from the premultiplied sums as they are given; and the floor, from what UNORM16 leaves of a flat texel.
@@ -172,14 +165,7 @@ void checkLevel(CheckRun& run)
              .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return lrsmLevel(0.1f + float(i), 0.3f, 0.0f, 0.0f); }) : 0.0},
             worst, inputText<float, 4>({"diameter", "texel", "bias", "min"}, worst.input));
     const auto zero = exhaust(3, [](std::uint64_t i) { return lrsmLevel(0.0f, 0.1f, 0.0f, float(i)) == float(i) ? 0.0 : 1.0; });
-    run.add({.equation = "sec5",
-             .function = "lrsmLevel, diameter 0",
-             .oracle = "minLevel",
-             .domain = "minLevel 0, 1, 2",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            zero, "minLevel = " + exactText(zero.input[0]));
+    run.add(exactCheck("sec5", "lrsmLevel, diameter 0", "minLevel", "minLevel 0, 1, 2"), zero, "minLevel = " + exactText(zero.input[0]));
 }
 
 void checkProjection(CheckRun& run)

@@ -42,9 +42,7 @@ void addStorageTrades(CheckRun& run)
     ConeSettings cones;
     cones.backface = Backface::cosine;
     const NormalCdf phi;
-    LayerSettings layers;
-    layers.depthLayers = 2;
-    layers.storage = Storage::float32;
+    LayerSettings layers = layersOf(2, 2);
     const Lrsm exact = buildLrsm(rsm, layers);
 
     EquationCurve curve{.equation = "table1",

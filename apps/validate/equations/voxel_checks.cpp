@@ -2,23 +2,10 @@
 #include "voxel/opacity_pyramid.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/synthetic_grids.h"
 
 namespace lrsm {
 namespace {
-
-BitGrid randomGrid(int n, double density, std::uint32_t stream)
-{
-    BitGrid grid;
-    grid.frame.resolution = n;
-    const auto edge = std::size_t(BitGrid::bricksPerEdge(n));
-    grid.bricks.assign(edge * edge * edge, 0);
-    SearchRandom random(stream);
-    for (int z = 0; z < n; ++z)
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x)
-                if (random.unit() < density) grid.bricks[grid.brickIndex(x, y, z)] |= std::uint64_t(1) << BitGrid::bitIndex(x, y, z);
-    return grid;
-}
 
 /// UNORM8 of an exact value: round half up.
 double stored(double exact, Storage storage)
@@ -60,16 +47,6 @@ double expectedTexel(const OpacityPyramid& pyramid, int level, int axis, const I
     return pyramid.storage == Storage::gpu ? std::floor(filtered * 255.0 + 0.5 + 1e-9) / 255.0 : filtered;
 }
 
-OpacityPyramid pyramidOf(int n, double density, OpacityAxes axes, Storage storage, MipFilter filter, std::uint32_t stream)
-{
-    VoxelSettings settings;
-    settings.resolution = n;
-    settings.axes = axes;
-    settings.storage = storage;
-    settings.mipFilter = filter;
-    return buildPyramid(randomGrid(n, density, stream), settings);
-}
-
 void checkLevels(CheckRun& run)
 {
     Worst<double, 1> wrong;
@@ -78,7 +55,7 @@ void checkLevels(CheckRun& run)
         for (const Storage storage : {Storage::gpu, Storage::float32})
             for (const MipFilter filter : {MipFilter::mean, MipFilter::coverage, MipFilter::max})
                 for (const auto& [edge, density] : {std::pair(32, 0.003), {32, 0.1}, {32, 0.6}, {32, 1.0}, {2, 0.5}, {4, 0.3}, {8, 0.2}, {64, 0.002}}) {
-                    const OpacityPyramid pyramid = pyramidOf(edge, density, axes, storage, filter, 801);
+                    const OpacityPyramid pyramid = pyramidOf(randomGrid(edge, density, 801), axes, storage, filter);
                     std::vector<IVec3> bad;
                     for (int level = 1; level < pyramid.levels(); ++level) {
                         const int n = edge >> level;
@@ -96,14 +73,8 @@ void checkLevels(CheckRun& run)
                         wrong.include(found);
                     }
                 }
-    run.add({.equation = "sec3",
-             .function = "buildPyramid",
-             .oracle = "columns counted, means in double",
-             .domain = "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            wrong, at);
+    run.add(exactCheck("sec3", "buildPyramid", "columns counted, means in double", "2^3 .. 64^3, density 0.002 .. 1, both axes, storages, all filters"), wrong,
+            at);
     const auto scales = exhaust(6, [](std::uint64_t i) {
         OpacityPyramid pyramid;
         pyramid.axes = OpacityAxes::directional;
@@ -112,14 +83,7 @@ void checkLevels(CheckRun& run)
         pyramid.axes = OpacityAxes::isotropic;
         return directional == kScale[i] && densityScale(pyramid, static_cast<int>(i)) == 1.0f ? 0.0 : 1.0;
     });
-    run.add({.equation = "sec3",
-             .function = "densityScale",
-             .oracle = "2^-min(level, 3)",
-             .domain = "levels 0 .. 5",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
-            scales, "level = " + exactText(scales.input[0]));
+    run.add(exactCheck("sec3", "densityScale", "2^-min(level, 3)", "levels 0 .. 5"), scales, "level = " + exactText(scales.input[0]));
 }
 
 /// Quadrilinear lookup by tents over all texels near, in double.
@@ -156,7 +120,7 @@ void checkLookup(CheckRun& run)
     double nanoseconds = 0.0;
     for (const OpacityAxes axes : {OpacityAxes::isotropic, OpacityAxes::directional})
         for (const Storage storage : {Storage::gpu, Storage::float32}) {
-            const OpacityPyramid pyramid = pyramidOf(32, 0.2, axes, storage, MipFilter::mean, 811);
+            const OpacityPyramid pyramid = pyramidOf(randomGrid(32, 0.2, 811), axes, storage);
             SearchSpace<float, 4> space{{{{-1.0f, 33.0f}, {-1.0f, 33.0f}, {-1.0f, 33.0f}, {-0.5f, 5.5f}}}, {}};
             for (const float p : {0.0f, 0.5f, 4.0f, 16.5f, 31.5f, 32.0f})
                 for (const float level : {0.0f, 1.0f, 2.5f, 5.0f}) space.planted.push_back({p, 16.0f, 32.0f - p, level});
@@ -188,7 +152,7 @@ void checkLookup(CheckRun& run)
             worst, at);
 
     // Fractions in 1/256: less than half a step beside a lattice point is that point; on it the exact lookup is the answer.
-    const OpacityPyramid pyramid = pyramidOf(32, 0.2, OpacityAxes::directional, Storage::gpu, MipFilter::mean, 811);
+    const OpacityPyramid pyramid = pyramidOf(randomGrid(32, 0.2, 811));
     const SearchSpace<float, 4> inside{{{{0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 32.0f}, {0.0f, 5.0f}}}, {}};
     const auto snapped = findWorst(
         inside, run.budget(15000),
@@ -201,19 +165,12 @@ void checkLookup(CheckRun& run)
                        exact = sampleOpacity(pyramid, p, float(level), FilterFraction::exact);
             const Vec3 beside = sampleOpacity(pyramid, p + Vec3(0.497f, -0.33f, 0.497f) * step, float(level), FilterFraction::fixed8);
             const float lod = std::floor(in[3] * 256.0f) / 256.0f;
-            const Vec3 texel(std::ldexp(16.5f, 0), 16.5f, 16.5f);
-            const bool levels = sampleOpacity(pyramid, texel, std::min(lod + 0.497f / 256.0f, 5.0f), FilterFraction::fixed8) ==
-                                sampleOpacity(pyramid, texel, std::min(lod, 5.0f), FilterFraction::fixed8);
-            return on == exact && on == beside && levels ? 0.0 : 1.0;
+            const auto atLevel = [&](float aside) { return sampleOpacity(pyramid, Vec3(16.5f), lod + aside / 256.0f, FilterFraction::fixed8); };
+            return on == exact && on == beside && atLevel(0.497f) == atLevel(0.0f) && atLevel(-0.497f) == atLevel(0.0f) ? 0.0 : 1.0;
         },
         813);
-    run.add({.equation = "sec3",
-             .function = "sampleOpacity, fractions in 1/256",
-             .oracle = "the exact lookup at the nearest lattice point",
-             .domain = "lattice points of every level, and up to 0.497 of a step beside them",
-             .boundName = "exact",
-             .errorKind = "wrong results",
-             .bound = 0.0},
+    run.add(exactCheck("sec3", "sampleOpacity, fractions in 1/256", "the exact lookup at the nearest lattice point",
+                       "lattice points of every level, and up to 0.497 of a step beside them"),
             snapped, inputText<float, 4>({"x", "y", "z", "level"}, snapped.input));
 }
 

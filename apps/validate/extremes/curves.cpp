@@ -49,25 +49,13 @@ double depthFighting(double ratio)
 double thinCoverage(Mode mode, double count)
 {
     const int n = static_cast<int>(std::sqrt(count) + 0.5);
-    const Rsm rsm = syntheticMap(n, [](int x, int y) {
-        MapTexel t;
-        t.coverage = x == 0 && y == 0 ? 1.0f : 0.0f;
-        return t;
-    });
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode, 1, 1));
-    const FilteredTexel top = sampleLayer(lrsm, 0, 0.5f, 0.5f, 99.0f, FilterFraction::exact);
+    const FilteredTexel top = topOfLoneTexel(mode, n);
     return std::max(std::abs(double(top.radiance.x) * count - 1.0), std::abs(double(top.depthAlpha) * count - 1.0));
 }
 
 double radianceLost(Mode mode, double radiance)
 {
-    const Rsm rsm = syntheticMap(16, [&](int, int) {
-        MapTexel t;
-        t.radiance = Vec3(float(radiance));
-        return t;
-    });
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode, 1, 1));
-    return std::abs(double(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 0.25f, paperCones()).x) / radiance - 1.0);
+    return std::abs(radianceError(mode, radiance));
 }
 
 /// A floor lit by a sun at this elevation sends light to a wall: irradiance over <n.l>, against the sun overhead.

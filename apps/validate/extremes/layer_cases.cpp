@@ -15,9 +15,7 @@ double uniformBound(Mode mode)
 
 MapTexel slope(int x, int n)
 {
-    MapTexel t;
-    t.depth = (static_cast<float>(x) + 0.5f) / static_cast<float>(n);
-    return t;
+    return {.depth = (static_cast<float>(x) + 0.5f) / static_cast<float>(n)};
 }
 
 /// Eq. 15's weights of all layers that hold z sum to 1 at each edge and its neighbours.
@@ -47,24 +45,16 @@ void edges(Mode mode, Probe& probe)
 void loneTexel(Mode mode, Probe& probe)
 {
     const int n = 64;
-    const Rsm rsm = syntheticMap(n, [](int x, int y) {
-        MapTexel t;
-        t.coverage = x == 20 && y == 33 ? 1.0f : 0.0f;
-        return t;
-    });
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode));
-    probe.output("lrsm", lrsm);
-    const FilteredTexel top = sampleLayer(lrsm, 0, 0.5f, 0.5f, 99.0f, FilterFraction::exact);
+    const FilteredTexel top = topOfLoneTexel(mode, n, &probe);
     // 16 of 65535: alpha itself is right to half a step of UNORM16.
     probe.bound("alpha over 1/4096, - 1", double(top.depthAlpha) * n * n - 1.0, mode == Mode::float32 ? 1e-6 : 0.04);
     probe.bound("A R over 1/4096, - 1", double(top.radiance.x) * n * n - 1.0, uniformBound(mode));
-    probe.require(isFinite(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 1.0f, paperCones())), "the sample is not finite");
 }
 
 /// A map whose texels are all the same sends R where the sphere holds the surface.
 void uniform(Mode mode, Probe& probe, int resolution)
 {
-    const Rsm rsm = syntheticMap(resolution, [](int, int) { return MapTexel{}; });
+    const Rsm rsm = flatMap(plainProjection(resolution), {});
     for (const bool dropEmpty : {true, false}) {
         LayerSettings settings = layerSettings(mode, 3, 2);
         settings.dropEmpty = dropEmpty;
@@ -78,8 +68,7 @@ void uniform(Mode mode, Probe& probe, int resolution)
 
 void nothing(Mode mode, Probe& probe)
 {
-    const Rsm rsm =
-        syntheticMap(32, [](int, int) { return MapTexel{.depth = 1.0f, .radiance = Vec3(0.0f), .normal = Vec3(0.0f), .nDotL = 0.0f, .coverage = 0.0f}; });
+    const Rsm rsm = flatMap(plainProjection(32), {.coverage = 0.0f});
     for (const bool dropEmpty : {true, false}) {
         LayerSettings settings = layerSettings(mode, 16, 8);
         settings.dropEmpty = dropEmpty;
@@ -93,9 +82,7 @@ void nothing(Mode mode, Probe& probe)
 /// Depths in two clusters of three asked slices: the one between is empty.
 void gap(Mode mode, Probe& probe)
 {
-    const Rsm rsm = syntheticMap(64, [](int x, int) {
-        return MapTexel{.depth = x < 32 ? 0.1f : 0.9f, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 0.9f, .coverage = 1.0f};
-    });
+    const Rsm rsm = syntheticMap(64, [](int x, int) { return MapTexel{.depth = x < 32 ? 0.1f : 0.9f}; });
     LayerSettings dropping = layerSettings(mode, 3, 1), keeping = dropping;
     keeping.dropEmpty = false;
     const Lrsm dropped = buildLrsm(rsm, dropping), kept = buildLrsm(rsm, keeping);
@@ -111,11 +98,7 @@ void gap(Mode mode, Probe& probe)
 /// Neighbouring texels face opposite ways: the mean normal is 0.
 void opposingNormals(Mode mode, Probe& probe)
 {
-    const Rsm rsm = syntheticMap(32, [](int x, int y) {
-        MapTexel t;
-        t.normal = (x + y) % 2 ? Vec3(0, 0, 1) : Vec3(0, 0, -1);
-        return t;
-    });
+    const Rsm rsm = syntheticMap(32, [](int x, int y) { return MapTexel{.normal = Vec3(0, 0, (x + y) % 2 ? 1 : -1)}; });
     const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode));
     probe.output("lrsm", lrsm);
     for (const Backface backface : {Backface::cosine, Backface::step}) {
@@ -129,8 +112,7 @@ void opposingNormals(Mode mode, Probe& probe)
 void oneDepth(Mode mode, Probe& probe)
 {
     for (const float depth : {0.0f, 1.0f, 0.5f, 0x1p-24f, std::nextafter(1.0f, 0.0f)}) {
-        const Rsm rsm = syntheticMap(
-            32, [&](int, int) { return MapTexel{.depth = depth, .radiance = Vec3(1.0f), .normal = Vec3(0, 0, 1), .nDotL = 1.0f, .coverage = 1.0f}; });
+        const Rsm rsm = flatMap(plainProjection(32), {.depth = depth, .nDotL = 1.0f});
         for (const int layers : {1, 2, 16}) {
             const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode, layers, 8));
             probe.output("lrsm", lrsm);
@@ -182,19 +164,6 @@ Group layerCases()
 }
 
 namespace {
-
-/// A uniform map of this radiance; what comes back over what went in, less 1.
-double radianceError(Mode mode, double radiance, Probe* probe)
-{
-    const Rsm rsm = syntheticMap(16, [&](int, int) {
-        MapTexel t;
-        t.radiance = Vec3(float(radiance));
-        return t;
-    });
-    const Lrsm lrsm = buildLrsm(rsm, layerSettings(mode, 1, 1));
-    if (probe) probe->output("lrsm", lrsm);
-    return double(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 0.25f, paperCones()).x) / radiance - 1.0;
-}
 
 void radianceOf(Mode mode, Probe& probe, double radiance)
 {

@@ -1,3 +1,4 @@
+#include "apps/validate/equations/oracle.h"
 #include "apps/validate/extremes/catalogue.h"
 #include "lrsm/sample.h"
 
@@ -6,15 +7,6 @@
 // Eq. 10-12 at the ends of their arguments, against long double arithmetic and the C library's erfc.
 namespace lrsm::extremes {
 namespace {
-
-/// Eq. 12; variance <= 0 is a step with 1/2 on the edge.
-long double trueVisibility(float mu, float sigma2, float zc, float rc)
-{
-    const long double d = std::abs(static_cast<long double>(zc) - static_cast<long double>(mu)), r = static_cast<long double>(rc);
-    if (!(sigma2 > 0.0f)) return d < r ? 1.0L : d > r ? 0.0L : 0.5L;
-    const long double s = std::sqrt(2.0L * static_cast<long double>(sigma2));
-    return 0.5L * (std::erfc((d - r) / s) - std::erfc((d + r) / s));
-}
 
 struct Input {
     float mu, sigma2, zc, rc;
@@ -33,7 +25,7 @@ void compare(Probe& probe, const std::vector<Input>& inputs)
             const float v = gaussianVisibility(phi, in.mu, in.sigma2, in.zc, in.rc);
             probe.require(v >= 0.0f && v <= 1.0f, std::string(m.name) + ": V outside [0, 1]");
             probe.note(double(v));
-            worst = std::max(worst, static_cast<double>(std::abs(static_cast<long double>(v) - trueVisibility(in.mu, in.sigma2, in.zc, in.rc))));
+            worst = std::max(worst, static_cast<double>(std::abs(static_cast<long double>(v) - oracle::visibility(in.mu, in.sigma2, in.zc, in.rc))));
         }
         probe.bound(std::string("error of V, ") + m.name, worst, double(gaussianVisibilityMaxError(phi)));
     }

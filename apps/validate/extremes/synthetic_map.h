@@ -1,45 +1,24 @@
 #pragma once
 
+#include "apps/validate/equations/synthetic_maps.h"
 #include "apps/validate/extremes/catalogue.h"
 #include "lrsm/sample.h"
 
 namespace lrsm::extremes {
 
-struct MapTexel {
-    float depth = 0.5f;
-    Vec3 radiance{1.0f};
-    Vec3 normal{0.0f, 0.0f, 1.0f};
-    float nDotL = 0.9f;
-    float coverage = 1.0f;
-};
-
 /// A reflective shadow map made by hand: an orthographic light at z = 0 that looks along -z, 2 m wide, depths over `range` metres from `nearMetres` on.
 template <class Texel>
 Rsm syntheticMap(int resolution, Texel&& texel, float range = 1.0f, float nearMetres = 0.0f)
 {
-    Rsm rsm;
-    rsm.projection.depthNear = nearMetres;
-    rsm.projection.depthFar = nearMetres + range;
-    rsm.projection.resolution = resolution;
-    rsm.texels = Image<RsmTexel>(resolution, resolution);
-    rsm.depthLinear = Image<float>(resolution, resolution, 1.0f);
-    for (int y = 0; y < resolution; ++y)
-        for (int x = 0; x < resolution; ++x) {
-            const MapTexel t = texel(x, y);
-            if (!(t.coverage > 0.0f)) continue;
-            rsm.texels.at(x, y) = {t.radiance, t.coverage, t.normal, t.nDotL};
-            rsm.depthLinear.at(x, y) = t.depth;
-        }
-    return rsm;
+    LightProjection projection = plainProjection(resolution);
+    projection.depthNear = nearMetres;
+    projection.depthFar = nearMetres + range;
+    return lrsm::syntheticMap(projection, texel);
 }
 
 inline LayerSettings layerSettings(Mode mode, int depthLayers = 2, int normalLayers = 2, float overlap = 0.0f)
 {
-    LayerSettings settings;
-    settings.depthLayers = depthLayers;
-    settings.normalLayers = normalLayers;
-    settings.overlap = overlap;
-    settings.storage = mode == Mode::float32 ? Storage::float32 : Storage::gpu;
+    LayerSettings settings = layersOf(depthLayers, normalLayers, overlap, mode == Mode::float32 ? Storage::float32 : Storage::gpu);
     settings.halfRounding = mode == Mode::gpuNearestEven ? HalfRounding::nearestEven : HalfRounding::d3d;
     return settings;
 }
@@ -61,6 +40,26 @@ inline Vec3 sampleAt(const Lrsm& lrsm, float u, float v, float depthMetres, floa
     static const NormalCdf phi(GaussianMethod::exact);
     const ConeSample sample{Vec3(2.0f * u - 1.0f, 1.0f - 2.0f * v, -(lrsm.projection.depthNear + depthMetres)), radius, Vec3(0, 0, 1)};
     return sampleLrsm(lrsm, sample, cones, phi);
+}
+
+/// A uniform map of this radiance, stored and sampled: what comes back over what went in, less 1.
+inline double radianceError(Mode mode, double radiance, Probe* probe = nullptr)
+{
+    const Lrsm lrsm = buildLrsm(flatMap(plainProjection(16), {.radiance = Vec3(float(radiance))}), layerSettings(mode, 1, 1));
+    if (probe) probe->output("lrsm", lrsm);
+    return double(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 0.25f, paperCones()).x) / radiance - 1.0;
+}
+
+/// What a map of n^2 texels, one of them lit, leaves at the chain's top.
+inline FilteredTexel topOfLoneTexel(Mode mode, int n, Probe* probe = nullptr)
+{
+    const Lrsm lrsm =
+        buildLrsm(syntheticMap(n, [n](int x, int y) { return MapTexel{.coverage = x == n / 3 && y == n / 2 ? 1.0f : 0.0f}; }), layerSettings(mode));
+    if (probe) {
+        probe->output("lrsm", lrsm);
+        probe->require(isFinite(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 1.0f, paperCones())), "the sample is not finite");
+    }
+    return sampleLayer(lrsm, 0, 0.5f, 0.5f, 99.0f, FilterFraction::exact);
 }
 
 }  // namespace lrsm::extremes

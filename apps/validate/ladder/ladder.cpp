@@ -1,7 +1,6 @@
 #include "apps/validate/ladder/ladder.h"
 
 #include "apps/validate/ladder/cone_opacity.h"
-#include "apps/validate/ladder/filtered_radiance.h"
 #include "apps/validate/ladder/ladder_statistics.h"
 #include "apps/validate/ladder/light_footprint.h"
 #include "apps/validate/ladder/segment_emission.h"
@@ -121,6 +120,8 @@ class LadderWorld {
 
         const CoveredSphere covered{dvec3(sphere.centre), double(sphere.radius), dvec3(sphere.toReceiver)};
         const TermSettings terms = TermSettings::of(settings_.cones);
+        ConeSettings exactFractions = settings_.cones;
+        exactFractions.filterFraction = FilterFraction::exact;
         double brightest = -1.0;
         Vec3 shipped(0.0f);
         for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -132,8 +133,9 @@ class LadderWorld {
             rung(RadianceRung::eq12) += meanOf(footprint.eq12);
             rung(RadianceRung::eq14) += meanOf(footprint.eq14);
             rung(RadianceRung::eq15) += meanOf(footprint.eq15);
-            rung(RadianceRung::mips) += meanOf(filteredRadiance(light.wide, sphere, settings_.cones, 0.0));
-            rung(RadianceRung::table1) += meanOf(filteredRadiance(stored, sphere, settings_.cones, double(kVarianceFloor)));
+            const twin::Projected projected = twin::project(stored.projection, dvec3(sphere.centre));
+            rung(RadianceRung::mips) += meanOf(twin::algorithm1(light.wide, projected, sphere, exactFractions, 0.0).radiance);
+            rung(RadianceRung::table1) += meanOf(twin::algorithm1(stored, projected, sphere, exactFractions).radiance);
             shipped += sampleLrsm(stored, sphere, settings_.cones, phi_);
             if (const double brightness = meanOf(footprint.eq3); brightness > brightest) {
                 brightest = brightness;

@@ -20,6 +20,16 @@ double quantile(const std::vector<double>& sorted, double probability)
     return sorted[low] + (at - double(low)) * (sorted[high] - sorted[low]);
 }
 
+struct MeanAndRms {
+    double mean, rms;
+};
+MeanAndRms meanAndRms(const std::vector<double>& values)
+{
+    double sum = 0.0, squares = 0.0;
+    for (const double v : values) sum += v, squares += v * v;
+    return {sum / double(values.size()), std::sqrt(squares / double(values.size()))};
+}
+
 double weightedMean(std::span<const double> values, std::span<const double> weights)
 {
     double sum = 0.0, total = 0.0, plain = 0.0;
@@ -65,18 +75,11 @@ CurveBin describeBin(const LadderView& view, const std::vector<LadderSample>& sa
 {
     CurveBin bin;
     bin.count = members.size();
-    const auto meanAndRms = [](const std::vector<double>& values, std::vector<double>& means, std::vector<double>& rms) {
-        double sum = 0.0, squares = 0.0;
-        for (const double v : values) {
-            sum += v;
-            squares += v * v;
-        }
-        means.push_back(sum / double(values.size()));
-        rms.push_back(std::sqrt(squares / double(values.size())));
-    };
     for (std::size_t rung = 0; rung < view.rungs.size(); ++rung) {
-        meanAndRms(differencesBetween(view, samples, members, rung, rung ? rung - 1 : 0), bin.meanToAbove, bin.rmsToAbove);
-        meanAndRms(differencesBetween(view, samples, members, rung, 0), bin.meanToTop, bin.rmsToTop);
+        const MeanAndRms above = meanAndRms(differencesBetween(view, samples, members, rung, rung ? rung - 1 : 0)),
+                         top = meanAndRms(differencesBetween(view, samples, members, rung, 0));
+        bin.meanToAbove.push_back(above.mean), bin.rmsToAbove.push_back(above.rms);
+        bin.meanToTop.push_back(top.mean), bin.rmsToTop.push_back(top.rms);
     }
     return bin;
 }
@@ -139,13 +142,9 @@ DifferenceStatistics describeDifferences(std::vector<double> differences, std::s
     DifferenceStatistics statistics;
     if (differences.empty()) return statistics;
     statistics.weightedMean = weightedMean(differences, weights);
-    double squares = 0.0, sum = 0.0;
-    for (const double d : differences) {
-        sum += d;
-        squares += d * d;
-    }
-    statistics.mean = sum / double(differences.size());
-    statistics.rms = std::sqrt(squares / double(differences.size()));
+    const MeanAndRms both = meanAndRms(differences);
+    statistics.mean = both.mean;
+    statistics.rms = both.rms;
     std::sort(differences.begin(), differences.end());
     for (const double p : ladderProbabilities()) statistics.quantiles.push_back(quantile(differences, p));
     for (double& d : differences) d = std::abs(d);

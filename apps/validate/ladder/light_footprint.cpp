@@ -1,5 +1,7 @@
 #include "apps/validate/ladder/light_footprint.h"
 
+#include "apps/validate/equations/oracle.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -250,7 +252,7 @@ class FootprintPass {
         const auto normals = static_cast<std::size_t>(layers_.normalSlices()), normalSlice = static_cast<std::size_t>(layers_.normalSlice(nDotL));
         parts_[static_cast<std::size_t>(layers_.depthSlice(depth)) * normals + normalSlice] += one;
         for (std::size_t s = 0; s < chosen_.size(); ++s)
-            if (depth >= chosen_[s].depthMin && (depth < chosen_[s].depthMax || chosen_[s].holdsEnd)) selected_[s * normals + normalSlice] += one;
+            if (depth >= chosen_[s].range.depthMin && (depth < chosen_[s].range.depthMax || chosen_[s].holdsEnd)) selected_[s * normals + normalSlice] += one;
     }
 
     const Rsm& rsm_;
@@ -291,11 +293,8 @@ double facingTerm(const TermSettings& terms, double cosine)
 
 double gaussianShare(double distance, double variance, double radius)
 {
-    const double d = std::abs(distance);
     // Below 1e-14 of the radius squared the moments of equal depths differ by rounding alone.
-    if (!(variance > 1e-14 * radius * radius)) return d < radius ? 1.0 : d > radius ? 0.0 : 0.5;
-    const double scale = 1.0 / std::sqrt(2.0 * variance);
-    return 0.5 * (std::erfc((d - radius) * scale) - std::erfc((d + radius) * scale));
+    return static_cast<double>(oracle::visibility(0.0L, variance > 1e-14 * radius * radius ? variance : 0.0, distance, radius));
 }
 
 FootprintRadiance footprintRadiance(const Rsm& rsm, const LayerModel& layers, const TermSettings& terms, const CoveredSphere& sphere, const EmbreeScene* embree)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/validate/ladder/layer_model.h"
+#include "apps/validate/equations/layer_model.h"
 #include "reference/embree_scene.h"
 
 #include <glm/glm.hpp>

@@ -111,7 +111,9 @@ TEST_CASE("furnace: all four give the closed form", "[validation][split][furnace
                                                                               {Visibility::voxel, Radiance::exact},
                                                                               {Visibility::exact, Radiance::lrsm},
                                                                               {Visibility::exact, Radiance::exact}}));
-    const Frame frame = renderSplit(scene, smallSettings(), {visibility, radiance, 32});
+    Settings settings = smallSettings();
+    settings.rsm.resolution = 256;  // six maps
+    const Frame frame = renderSplit(scene, settings, {visibility, radiance, 16});
     const bool exact = visibility == Visibility::exact && radiance == Radiance::exact;
     CAPTURE(int(visibility), int(radiance));
     CHECK(meanOf(frame.irradiance) == Approx(0.5).epsilon(exact ? 0.005 : 0.08));

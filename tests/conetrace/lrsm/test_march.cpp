@@ -1,7 +1,10 @@
-// One cone through a world made of numbers: Eq. 1 as a closed sum for `paper`, the telescoping sum for `slab`.
+// One cone through a world made of numbers: the telescoping sum for `slab`, closed forms of Eq. 1 for `paper`. Both marches are held against twins in double
+// in apps/validate/equations/march_checks.cpp.
 #include "conetrace/lrsm/march_paper.h"
 #include "conetrace/lrsm/march_slab.h"
 #include "voxel/voxelize.h"
+
+#include "apps/validate/equations/synthetic_maps.h"
 
 #include "catch.h"
 
@@ -25,11 +28,10 @@ Vec3 tilted(double cosine, double azimuth)
 }
 
 /// The plane z = 0 of the world, lit from above by a sun whose map is large enough to have no borders near the grid.
-/// Each texel is what the plane is at its centre; radiance grows linearly along x.
-Rsm litPlane(const Vec3& toLight, const Vec3& radiance, const Vec3& slopePerMetre = Vec3(0.0f), int resolution = 512)
+/// Each texel is what the plane is at its centre.
+Rsm litPlane(const Vec3& toLight, const Vec3& radiance, int resolution = 512)
 {
-    Rsm rsm;
-    LightProjection& q = rsm.projection;
+    LightProjection q;
     const Mat3 axes = frameFromNormal(toLight);
     q.right = axes[0];
     q.up = axes[1];
@@ -38,28 +40,11 @@ Rsm litPlane(const Vec3& toLight, const Vec3& radiance, const Vec3& slopePerMetr
     q.position = toLight * 200.0f;
     q.depthFar = 400.0f;
     q.resolution = resolution;
-    rsm.texels = Image<RsmTexel>(resolution, resolution);
-    rsm.depthLinear = Image<float>(resolution, resolution);
-    for (int y = 0; y < resolution; ++y)
-        for (int x = 0; x < resolution; ++x) {
-            const double across = (2.0 * (x + 0.5) / resolution - 1) * 64, up = (1 - 2.0 * (y + 0.5) / resolution) * 64;
-            const DVec3 start = DVec3(q.position) + DVec3(q.right) * across + DVec3(q.up) * up;
-            const double depth = start.z / double(toLight.z);
-            const auto hitX = float((start - depth * DVec3(toLight)).x);
-            rsm.texels.at(x, y) = {radiance + slopePerMetre * hitX, 1.0f, Vec3(0, 0, 1), toLight.z};
-            rsm.depthLinear.at(x, y) = float(depth / 400.0);
-        }
-    return rsm;
-}
-
-/// Float storage, one layer over the light's whole range: nothing but the march is under test.
-LayerSettings oneLayer()
-{
-    LayerSettings layers;
-    layers.depthLayers = layers.normalLayers = 1;
-    layers.fitRanges = false;
-    layers.storage = Storage::float32;
-    return layers;
+    return syntheticMap(q, [&](int x, int y) {
+        const double across = (2.0 * (x + 0.5) / resolution - 1) * 64, up = (1 - 2.0 * (y + 0.5) / resolution) * 64;
+        const DVec3 start = DVec3(q.position) + DVec3(q.right) * across + DVec3(q.up) * up;
+        return MapTexel{.depth = float(start.z / double(toLight.z) / 400.0), .radiance = radiance, .normal = Vec3(0, 0, 1), .nDotL = toLight.z};
+    });
 }
 
 struct World {
@@ -126,28 +111,30 @@ TEST_CASE("slab: an infinite wall in thin air gives exactly L, for any step and 
 {
     // Light along the wall's normal: the depth's variance is the tap's own and the w of consecutive segments telescope exactly.
     const Vec3 radiance(2.0f, 0.5f, 8.0f);
-    const float step = GENERATE(0.25f, 0.5f, 1.0f, 2.0f);
-    const double cosine = GENERATE(1.0, 0.7, 0.3);
-    const World world(litPlane(Vec3(0, 0, 1), radiance), oneLayer(), slabSettings(step));
-    for (int i = 0; i < 8; ++i) {
-        CAPTURE(step, cosine, i);
-        const ConeResult cone = world.march(Mist{}, rayToPlane(tilted(cosine, 0.4 + i), 3.0f + 0.117f * float(i)), 1e-4f);
-        for (int c = 0; c < 3; ++c) REQUIRE(double(cone.radiance[c] / radiance[c]) == Approx(1).margin(kTelescopeMaxError));
-    }
+    World world(litPlane(Vec3(0, 0, 1), radiance), oneLayer(), ConeSettings{});
+    for (const float step : {0.25f, 0.5f, 1.0f, 2.0f})
+        for (const double cosine : {1.0, 0.7, 0.3})
+            for (int i = 0; i < 8; ++i) {
+                CAPTURE(step, cosine, i);
+                world.settings.step = step;
+                const ConeResult cone = world.march(Mist{}, rayToPlane(tilted(cosine, 0.4 + i), 3.0f + 0.117f * float(i)), 1e-4f);
+                for (int c = 0; c < 3; ++c) REQUIRE(double(cone.radiance[c] / radiance[c]) == Approx(1).margin(kTelescopeMaxError));
+            }
 }
 
 TEST_CASE("slab: fitted layers lose no more than the tails they skip", "[conetrace][march][slab]")
 {
     LayerSettings fitted = oneLayer();
     fitted.fitRanges = true;
-    const float step = GENERATE(0.25f, 0.5f, 1.0f);
-    const World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), fitted, slabSettings(step));
-    for (const double cosine : {1.0, 0.5, 0.3}) {
-        const double got = double(world.march(Mist{}, rayToPlane(tilted(cosine, 1.0), 3.1f), 1e-4f).radiance.x);
-        CAPTURE(step, cosine, got);
-        CHECK(got > 1 - kSkippedTails - kTelescopeMaxError);
-        CHECK(got < 1 + kTelescopeMaxError);
-    }
+    World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), fitted, ConeSettings{});
+    for (const float step : {0.25f, 0.5f, 1.0f})
+        for (const double cosine : {1.0, 0.5, 0.3}) {
+            world.settings.step = step;
+            const double got = double(world.march(Mist{}, rayToPlane(tilted(cosine, 1.0), 3.1f), 1e-4f).radiance.x);
+            CAPTURE(step, cosine, got);
+            CHECK(got > 1 - kSkippedTails - kTelescopeMaxError);
+            CHECK(got < 1 + kTelescopeMaxError);
+        }
 }
 
 TEST_CASE("slab: under slanted light narrow cones still give L in the mean; one ray strays with the phase of its texels", "[conetrace][march][slab]")
@@ -173,15 +160,17 @@ TEST_CASE("slab: a cone that widens keeps L in the mean within a few percent, mo
 {
     // sigma grows with the tap, so neighbouring Phi no longer cancel to the last digit: a few percent too much.
     const double lightCosine = GENERATE(1.0, 0.6, 0.25);
-    const float step = GENERATE(0.25f, 0.5f, 1.0f);
-    const World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), slabSettings(step));
-    double sum = 0;
-    for (int i = 0; i < 72; ++i) {
-        const double cosine = 0.3 + 0.7 * ((i * 5) % 72) / 71.0;
-        sum += double(world.march(Mist{}, rayToPlane(tilted(cosine, 0.26 * i), 3.0f + 0.117f * float(i % 7), 0.11f * float(i)), 0.3f).radiance.x);
+    World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), ConeSettings{});
+    for (const float step : {0.25f, 0.5f, 1.0f}) {
+        world.settings.step = step;
+        double sum = 0;
+        for (int i = 0; i < 72; ++i) {
+            const double cosine = 0.3 + 0.7 * ((i * 5) % 72) / 71.0;
+            sum += double(world.march(Mist{}, rayToPlane(tilted(cosine, 0.26 * i), 3.0f + 0.117f * float(i % 7), 0.11f * float(i)), 0.3f).radiance.x);
+        }
+        CAPTURE(lightCosine, step, sum / 72);
+        CHECK(sum / 72 == Approx(1).margin(lightCosine < 0.5 ? 0.15 : 0.06));
     }
-    CAPTURE(lightCosine, step, sum / 72);
-    CHECK(sum / 72 == Approx(1).margin(lightCosine < 0.5 ? 0.15 : 0.06));
 }
 
 TEST_CASE("slab: two lights add, a wall seen from its unlit side emits nothing", "[conetrace][march][slab]")
@@ -239,16 +228,6 @@ ConeSettings paperSettings()
     return settings;
 }
 
-/// Distances of the sphere centres by the stated rule, in double, metres.
-std::vector<double> centresOf(const ConeSettings& settings, double tanHalf, std::size_t count)
-{
-    std::vector<double> centres;
-    for (double t = double(settings.startVoxels); centres.size() < count;
-         t += double(settings.step) * std::max(double(settings.minDiameterVoxels), 2 * t * tanHalf))
-        centres.push_back(t * double(kVoxelSize));
-    return centres;
-}
-
 /// What the recorder of --pixel sees.
 struct Tape {
     static constexpr bool active = true;
@@ -262,37 +241,15 @@ constexpr double kPaperMaxError = 2e-5;  // float sums of about ten terms, radia
 
 }  // namespace
 
-TEST_CASE("Eq. 1: opacities and radiances that differ from step to step give the printed sum", "[conetrace][march][eq1]")
+TEST_CASE("Eq. 1: --pixel tells the march's own story, an empty step samples no light, and without a recorder the same bits come out",
+          "[conetrace][march][eq1]")
 {
-    // Radiance is linear along x, which box and bilinear filters keep: L_i is the plane's at the sphere's own x.
-    const Vec3 atOrigin(40.0f, 20.0f, 60.0f), slope(1.0f, -0.5f, 2.0f);
-    ConeSettings settings = paperSettings();
-    settings.push = GENERATE(0.0f, 0.75f);
-    settings.step = GENERATE(0.25f, 0.5f);
-    const World world(litPlane(Vec3(0, 0, 1), atOrigin, slope), oneLayer(), settings);
-    const ByStep alphas{{0.1f, 0.0f, 0.4f, 0.25f, 0.9f, 0.05f, 0.5f, 0.3f}};
-    const float tanHalf = 0.05f;
-    const Vec3 direction = glm::normalize(Vec3(0.8f, 0.1f, -0.3f));
-    ConeRay ray = rayFrom(Vec3(-6, 1, 3), direction);
-    ray.receiverNormal = Vec3(0.6f, 0.0f, -0.8f);
-
-    DVec3 expected(0);
-    double transmittance = 1;
-    const std::vector<double> centres = centresOf(settings, double(tanHalf), alphas.alpha.size());
-    for (std::size_t i = 0; i < centres.size(); ++i) {
-        const double radius = 0.5 * std::max(double(settings.minDiameterVoxels * kVoxelSize), 2 * centres[i] * double(tanHalf));
-        const double x = -6 + centres[i] * double(direction.x) + double(settings.push) * radius * 0.6;
-        expected += transmittance * double(alphas.alpha[i]) * (DVec3(atOrigin) + DVec3(slope) * x);
-        transmittance *= 1 - double(alphas.alpha[i]);
-    }
+    const World world(litPlane(Vec3(0, 0, 1), Vec3(40.0f, 20.0f, 60.0f)), oneLayer(), paperSettings());
+    const std::vector<float> alphas = {0.1f, 0.0f, 0.4f, 0.25f, 0.9f, 0.05f, 0.5f, 0.3f};
+    const ConeRay ray = rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f)));
     Tape tape;
     ConeCounts counts;
-    const ConeResult cone = world.march(alphas, ray, tanHalf, counts, tape);
-    CAPTURE(settings.push, settings.step);
-    for (int c = 0; c < 3; ++c) CHECK(double(cone.radiance[c]) == Approx(expected[c]).epsilon(kPaperMaxError));
-    CHECK(double(cone.opacity) == Approx(1 - transmittance).epsilon(kPaperMaxError));
-
-    // --pixel tells the same story, and an empty step samples no light.
+    const ConeResult cone = world.march(ByStep{alphas}, ray, 0.05f, counts, tape);
     REQUIRE(tape.steps.size() == counts.steps);
     CHECK(counts.voxelTaps == counts.steps);
     CHECK(counts.lrsmSamples == 7);
@@ -300,22 +257,21 @@ TEST_CASE("Eq. 1: opacities and radiances that differ from step to step give the
     CHECK(tape.steps[0].transmittance == 1.0f);
     CHECK(double(tape.steps[3].transmittance) == Approx(0.9 * 0.6));
     CHECK(tape.steps[4].alpha == 0.9f);
-
-    // Without a recorder the same bits come out.
-    const ByStep again{alphas.alpha};
-    CHECK(world.march(again, ray, tanHalf).radiance == cone.radiance);
+    CHECK(world.march(ByStep{alphas}, ray, 0.05f).radiance == cone.radiance);
 }
 
 TEST_CASE("Eq. 1: a uniform medium of opacity a takes 1 - (1 - a)^n of a constant radiance", "[conetrace][march][eq1]")
 {
     const World world(litPlane(Vec3(0, 0, 1), Vec3(5.0f)), oneLayer(), paperSettings());
-    const float a = GENERATE(0.02f, 0.2f, 0.7f, 1.0f);
-    const int n = GENERATE(1, 3, 9);
-    const ConeResult cone = world.march(ByStep{std::vector<float>(std::size_t(n), a)}, rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f))), 0.05f);
-    const double covered = 1 - std::pow(1 - double(a), n);
-    CAPTURE(a, n);
-    CHECK(double(cone.radiance.x) == Approx(5 * covered).epsilon(kPaperMaxError));
-    CHECK(double(cone.opacity) == Approx(covered).epsilon(kPaperMaxError));
+    const ConeRay ray = rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f)));
+    for (const float a : {0.02f, 0.2f, 0.7f, 1.0f})
+        for (const int n : {1, 3, 9}) {
+            const ConeResult cone = world.march(ByStep{std::vector<float>(std::size_t(n), a)}, ray, 0.05f);
+            const double covered = 1 - std::pow(1 - double(a), n);
+            CAPTURE(a, n);
+            CHECK(double(cone.radiance.x) == Approx(5 * covered).epsilon(kPaperMaxError));
+            CHECK(double(cone.opacity) == Approx(covered).epsilon(kPaperMaxError));
+        }
 }
 
 TEST_CASE("Eq. 1: the cut-off ends a cone that has nothing left to gather, and loses less than it says", "[conetrace][march][eq1]")
@@ -337,25 +293,4 @@ TEST_CASE("density along a cone: the value itself, or area densities weighted by
     CHECK(densityAlong(pyramid, Vec3(0.3f), Vec3(0, -0.6f, 0.8f)) == 0.3f);
     pyramid.axes = OpacityAxes::directional;
     CHECK(double(densityAlong(pyramid, Vec3(0.5f, 0.25f, 1.0f), Vec3(0, -0.6f, 0.8f))) == Approx(0.6 * 0.25 + 0.8));
-}
-
-TEST_CASE("step opacity: as read, or 1 - (1 - a)^(k length); a wall's optical depth does not depend on how it is stepped", "[conetrace][march][eq1]")
-{
-    ConeSettings settings;
-    settings.opacity = OpacityModel::none;
-    CHECK(stepOpacity(0.37f, 5.0f, settings) == 0.37f);
-    CHECK(stepOpacity(1.5f, 0.1f, settings) == 1.0f);
-    settings.opacity = OpacityModel::density;
-    settings.densityK = GENERATE(0.5f, 1.0f, 2.0f, 3.0f);
-    for (const float a : {0.001f, 0.1f, 0.5f, 0.99f})
-        for (const float length : {0.1f, 0.5f, 1.0f, 4.0f, 32.0f}) {
-            CAPTURE(settings.densityK, a, length);
-            const double exact = 1 - std::pow(1 - double(a), double(settings.densityK) * double(length));
-            const double bound = double(kStepOpacityMaxError) * std::max(1.0, double(settings.densityK * length) / 16);
-            CHECK(double(stepOpacity(a, length, settings)) == Approx(exact).margin(bound));
-            const double once = 1 - double(stepOpacity(a, length, settings)), half = 1 - double(stepOpacity(a, 0.5f * length, settings));
-            CHECK(half * half == Approx(once).margin(2 * bound));
-        }
-    CHECK(stepOpacity(0.0f, 1.0f, settings) == 0.0f);
-    CHECK(stepOpacity(1.0f, 0.01f, settings) == 1.0f);
 }

@@ -1,16 +1,16 @@
 #pragma once
 
-#include "core/settings/settings.h"
-#include "lrsm/rsm.h"
+#include "apps/validate/equations/algorithm1_twin.h"
 
 #include <vector>
 
-/// Sec. 4.3 in double, from the settings and the RSM alone: the ladder's own reading of what lrsm/layers.h implements.
+/// Sec. 4.3 in double, from the settings and the RSM alone: what lrsm/layers.h implements, read a second time.
 namespace lrsm {
 
-/// One layer's texels, and its weight f(z_c). Linear depth of the light, [depthMin, depthMax).
+/// One layer's depths, and its weight f(z_c). Linear depth of the light, [depthMin, depthMax).
 struct SelectedSlice {
-    double depthMin = 0.0, depthMax = 1.0, share = 1.0;
+    twin::Slice range;
+    double share = 1.0;
     bool holdsEnd = false;  ///< the farthest slice is closed
 };
 
@@ -20,6 +20,9 @@ class LayerModel {
 
     int depthSlices() const { return slices_; }
     int normalSlices() const { return normalSlices_; }
+
+    /// The i-th depth slice with its overlap.
+    twin::Slice slice(int i) const;
 
     /// The partition of rung Eq. 13, 14: equal slices without overlap.
     int depthSlice(double depth) const;

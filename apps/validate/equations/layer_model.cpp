@@ -1,4 +1,4 @@
-#include "apps/validate/ladder/layer_model.h"
+#include "apps/validate/equations/layer_model.h"
 
 #include <algorithm>
 
@@ -6,12 +6,6 @@ namespace lrsm {
 namespace {
 
 constexpr double kThinnest = 0x1p-16;  // of the light's range: docs of `partition`
-
-double smooth(double t)
-{
-    const double c = std::clamp(t, 0.0, 1.0);
-    return c * c * (3.0 - 2.0 * c);
-}
 
 }  // namespace
 
@@ -44,26 +38,27 @@ int LayerModel::normalSlice(double nDotL) const
     return std::clamp(static_cast<int>(std::floor(nDotL * normalSlices_)), 0, normalSlices_ - 1);
 }
 
+twin::Slice LayerModel::slice(int i) const
+{
+    const bool first = i == 0, last = i == slices_ - 1, endsDecay = outermostDecay_ && delta_ > 0.0;
+    const double reach = outermostDecay_ ? 0.0 : delta_, width = (high_ - low_) / slices_;
+    return {.depthMin = first ? low_ - reach : low_ + width * i - 0.5 * delta_,
+            .depthMax = last ? high_ + reach : low_ + width * (i + 1) + 0.5 * delta_,
+            .delta = delta_,
+            .decayAtMin = !first || endsDecay,
+            .decayAtMax = !last || endsDecay};
+}
+
 std::vector<SelectedSlice> LayerModel::select(double zc, double window, LayerSelection selection) const
 {
     std::vector<SelectedSlice> selected;
     for (int i = 0; i < slices_; ++i) {
-        const bool first = i == 0, last = i == slices_ - 1;
-        const double reach = outermostDecay_ ? 0.0 : delta_, width = (high_ - low_) / slices_;
-        SelectedSlice slice;
-        slice.depthMin = first ? low_ - reach : low_ + width * i - 0.5 * delta_;
-        slice.depthMax = last ? high_ + reach : low_ + width * (i + 1) + 0.5 * delta_;
-        slice.holdsEnd = last;
-        if (selection == LayerSelection::touched) {
-            slice.share = slice.depthMin <= zc + window && slice.depthMax >= zc - window ? 1.0 : 0.0;
-        } else {
-            // Eq. 15: k((z_c - zMin) / delta) at the one end, k((zMax - z_c) / delta) at the other, 1 between.
-            const bool inside = zc >= slice.depthMin && (zc < slice.depthMax || (last && zc == slice.depthMax));
-            slice.share = inside ? 1.0 : 0.0;
-            if (inside && delta_ > 0.0 && (!first || outermostDecay_)) slice.share *= smooth((zc - slice.depthMin) / delta_);
-            if (inside && delta_ > 0.0 && (!last || outermostDecay_)) slice.share *= smooth((slice.depthMax - zc) / delta_);
-        }
-        if (slice.share > 0.0) selected.push_back(slice);
+        SelectedSlice chosen{slice(i), 1.0, i == slices_ - 1};
+        if (selection == LayerSelection::touched)
+            chosen.share = chosen.range.depthMin <= zc + window && chosen.range.depthMax >= zc - window ? 1.0 : 0.0;
+        else
+            chosen.share = twin::decay(chosen.range, zc);
+        if (chosen.share > 0.0) selected.push_back(chosen);
     }
     return selected;
 }
