@@ -1,7 +1,7 @@
 // Holds the presets against the path tracer on the built-in scenes; README.md beside it says how limits and truths are made anew.
 #include "conetrace/render.h"
-#include "core/base/check.h"
-#include "core/base/settings_table.h"
+#include "core/base/errors.h"
+#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/scene_hash.h"
 #include "tests/accuracy/limits.h"

@@ -1,6 +1,6 @@
 #include "tests/accuracy/limits.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sweep/measurement.h"
+#include "apps/sweep/measurement.h"
 
 #include <map>
 #include <string>

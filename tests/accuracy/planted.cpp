@@ -1,8 +1,8 @@
 #include "tests/accuracy/planted.h"
 
-#include "conetrace/composite.h"
-#include "conetrace/direct.h"
-#include "conetrace/irradiance_filter.h"
+#include "conetrace/frame/composite.h"
+#include "conetrace/frame/direct.h"
+#include "conetrace/frame/irradiance_filter.h"
 #include "core/base/float_state.h"
 #include "voxel/voxelize.h"
 

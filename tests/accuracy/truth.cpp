@@ -1,6 +1,6 @@
 #include "tests/accuracy/truth.h"
 
-#include "core/base/check.h"
+#include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/imageio/image_io.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conetrace/render.h"
-#include "sweep/measure.h"
+#include "apps/sweep/measure.h"
 
 #include <string>
 #include <vector>
