@@ -46,9 +46,9 @@ std::vector<const ScalingCurve*> shownTimes(const MeasuredAxis& measured)
     constexpr std::size_t kPasses = 3;
     const std::string end = measured.axis.name == "threads" ? "_ms" : "_cpu_ms";
     std::vector<const ScalingCurve*> passes;
-    for (std::string pass : measuredPasses()) {
-        std::replace(pass.begin(), pass.end(), ' ', '_');
-        if (const ScalingCurve* curve = measured.result.find(pass + end)) passes.push_back(curve);
+    for (const ScalingCurve& curve : measured.result.curves) {
+        const bool processor = curve.series.ends_with("_cpu_ms"), time = curve.series.ends_with(end) && processor == (end == "_cpu_ms");
+        if (time && !curve.series.starts_with("frame_")) passes.push_back(&curve);
     }
     std::stable_sort(passes.begin(), passes.end(), [](const auto* a, const auto* b) { return a->median.back() > b->median.back(); });
     passes.resize(std::min(passes.size(), kPasses));

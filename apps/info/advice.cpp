@@ -52,10 +52,10 @@ class Adviser {
         const std::vector<int> layers = layersOf(changed);
         const auto bytes = [&](const Settings& of, const std::vector<int>& kept) {
             std::vector<PassReport> counted;
-            for (const int layers : kept) {
+            for (const int count : kept) {
                 PassReport& report = counted.emplace_back();
                 report.name = "lrsm " + std::to_string(counted.size() - 1);
-                report.counters = {{"layers_kept", double(layers)}};
+                report.counters = {{"layers_kept", double(count)}};
             }
             const MemoryQuestion question{scene_, analysis_.needs, of, width_, height_, Unknowns::found, &counted};
             return static_cast<double>(frameBytes(predictMemory(question), width_, height_));

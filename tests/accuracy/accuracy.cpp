@@ -1,9 +1,9 @@
 // Holds the presets against the path tracer on the built-in scenes; README.md beside it says how limits and truths are made anew.
 #include "conetrace/render.h"
 #include "core/base/errors.h"
-#include "core/settings/settings_table.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/scene_hash.h"
+#include "core/settings/settings_table.h"
 #include "tests/accuracy/limits.h"
 #include "tests/accuracy/planted.h"
 #include "tests/accuracy/truth.h"
@@ -60,8 +60,8 @@ Frame render(const Case& one, const Settings& settings)
     RenderOptions options;
     options.width = one.truth.width;
     options.height = one.truth.height;
-    options.hashPasses = false;
-    return renderFrame(one.scene, one.camera(), analyseRequirements(one.scene, settings.force), settings, options);
+    options.watch.hashPasses = false;
+    return renderFrame(one.scene, one.camera(), settings, options);
 }
 
 using Row = std::pair<RowName, PictureError>;

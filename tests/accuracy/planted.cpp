@@ -1,10 +1,6 @@
 #include "tests/accuracy/planted.h"
 
-#include "conetrace/frame/composite.h"
-#include "conetrace/frame/direct.h"
-#include "conetrace/frame/irradiance_filter.h"
-#include "core/base/float_state.h"
-#include "voxel/voxelize.h"
+#include "conetrace/lrsm/gather.h"
 
 #include <algorithm>
 
@@ -23,30 +19,22 @@ void dropLeastLayer(Lrsm& lrsm)
 
 Frame renderWithLoss(const Scene& scene, const Camera& camera, Settings settings, int width, int height, Loss loss)
 {
-    const FloatState state;
-    const Requirements needs = analyseRequirements(scene, settings.force);
     // No step is shorter than this, counted as the delay is in widths of the tap: a sphere's diameter is a tap's width or more.
     if (loss == Loss::transmittance) settings.cones.emitterDelayTaps -= settings.cones.step;
 
-    const OpacityPyramid opacity = buildPyramid(voxelize(scene, settings.voxel), settings.voxel);
-    std::vector<Rsm> rsms;
-    std::vector<Lrsm> lrsms;
-    for (const Light& light : scene.lights) {
-        rsms.push_back(renderRsm(scene, light, needs, settings.rsm));
-        lrsms.push_back(buildLrsm(rsms.back(), settings.layers));
-        if (loss == Loss::layer) dropLeastLayer(lrsms.back());
-    }
-
-    Frame frame;
-    frame.gbuffer = renderGBuffer(scene, camera, needs, {width, height});
-    frame.direct = traceDirect(frame.gbuffer, scene, camera, rsms, &opacity, needs, settings.direct).radiance;
-    const Gathered gathered = traceCones(frame.gbuffer, camera, opacity, lrsms, needs, settings.cones);
-    frame.irradiance = settings.cones.filter ? filterIrradiance(gathered.irradiance, frame.gbuffer) : gathered.irradiance;
-    IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, frame.irradiance, gathered.specular);
+    RenderOptions options{.width = width, .height = height, .watch = {.hashPasses = false, .progress = {}, .observe = {}}, .method = methodOf(settings.method)};
+    options.method.gather = [&](const GatherInput& input, PassLog& log) {
+        std::vector<Lrsm> lrsms = buildLrsms(input.rsms, settings.layers, log);
+        if (loss == Loss::layer)
+            for (Lrsm& lrsm : lrsms) dropLeastLayer(lrsm);
+        Gathered gathered = traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings.cones);
+        gathered.filter4x4 = settings.cones.filter;
+        return gathered;
+    };
+    Frame frame = renderFrame(scene, camera, settings, options);
     if (loss == Loss::albedo)
-        for (std::size_t i = 0; i < indirect.diffuse.texels.size(); ++i) indirect.diffuse.texels[i] *= frame.gbuffer.albedo.texels[i];
-    frame.combined = composite(frame.direct, indirect);
-    frame.indirectSpecular = std::move(indirect.specular);
+        for (std::size_t i = 0; i < frame.combined.texels.size(); ++i)
+            frame.combined.texels[i] += (frame.gbuffer.albedo.texels[i] - 1.0f) * frame.indirectDiffuse.texels[i];
     return frame;
 }
 

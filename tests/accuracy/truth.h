@@ -1,7 +1,7 @@
 #pragma once
 
-#include "conetrace/render.h"
 #include "apps/sweep/measure.h"
+#include "conetrace/render.h"
 
 #include <string>
 #include <vector>

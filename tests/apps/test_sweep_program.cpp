@@ -97,7 +97,7 @@ TEST_CASE("program: sweep killed or interrupted goes on to the rows of an uninte
         CHECK(part.size() == whole.size());
         for (const auto& [key, row] : whole) {
             REQUIRE(part.count(key) == 1);
-            for (const char* same : {"label", "irradiance_sha256", "rmse", "flip", "cone_steps", "rays", "bytes"}) CHECK(part.at(key)[same] == row[same]);
+            for (const char* same : {"label", "irradiance_sha256", "rmse", "flip", "counters", "rays", "bytes"}) CHECK(part.at(key)[same] == row[same]);
         }
         fs::remove_all(box.here() / "part");
     }

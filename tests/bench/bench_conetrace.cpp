@@ -3,6 +3,7 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
+#include "conetrace/lrsm/gather.h"
 #include "conetrace/render.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/settings/settings_table.h"
