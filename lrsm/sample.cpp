@@ -24,7 +24,7 @@ LayerTerms evaluateLayer(const Lrsm& lrsm, int layer, float f, const LightSpaceS
     terms.radiance = texel.radiance;
 
     // Eq. 8, backface culling.
-    terms.normal = backfaceWeight(normalTerm(texel, toReceiver), settings.backface);
+    terms.normal = backfaceWeight(normalTerm(texel, toReceiver), settings.gather.backface);
     if (!(terms.normal > 0.0f)) return terms;
 
     // Eq. 10-12, in the layer's warped depth.
@@ -47,10 +47,10 @@ Vec3 sampleLrsm(const Lrsm& lrsm, const ConeSample& sample, const ConeSettings& 
     const LightSpacePoint p = projectToLight(lrsm.projection, sample.centre);
     if (!p.valid || !(p.u >= 0.0f && p.u <= 1.0f && p.v >= 0.0f && p.v <= 1.0f)) return Vec3(0.0f);
 
-    const float level = lrsmLevel(2.0f * sample.radius, p.texelSize, settings.rsmLevelBias, settings.rsmMinLevel);
-    const LrsmFootprint footprint = makeFootprint(lrsm, p.u, p.v, level, settings.filterFraction);
-    const LightSpaceSample at{p.depth, sample.radius * settings.vRadiusScale / lrsm.projection.depthRange(), footprint};
-    const bool centred = settings.layerSelection == LayerSelection::centre;
+    const float level = lrsmLevel(2.0f * sample.radius, p.texelSize, settings.gather.rsmLevelBias, settings.gather.rsmMinLevel);
+    const LrsmFootprint footprint = makeFootprint(lrsm, p.u, p.v, level, settings.march.filterFraction);
+    const LightSpaceSample at{p.depth, sample.radius * settings.gather.vRadiusScale / lrsm.projection.depthRange(), footprint};
+    const bool centred = settings.gather.layerSelection == LayerSelection::centre;
 
     Vec3 outgoing(0.0f);
     for (int layer = 0; layer < lrsm.layers(); ++layer) {

@@ -28,7 +28,7 @@ Vec3 cosineDirection(const Vec3& normal, UnitPoint xi)
 {
     const Disk disk = diskPoint(xi);
     const float z = std::sqrt(std::max(0.0f, 1.0f - xi.u));
-    return glm::normalize(frameFromNormal(normal) * Vec3(disk.x, disk.y, z));
+    return glm::normalize(basisFromNormal(normal) * Vec3(disk.x, disk.y, z));
 }
 
 Vec3 coneDirection(const Vec3& axis, float cosHalf, UnitPoint xi)
@@ -38,18 +38,18 @@ Vec3 coneDirection(const Vec3& axis, float cosHalf, UnitPoint xi)
     const float away = xi.u * (1.0f - cosHalf);
     const float sine = std::sqrt(std::max(0.0f, away * (2.0f - away)));
     const SinCos azimuth = sinCos(2.0 * double(kPi) * double(xi.v));
-    return glm::normalize(frameFromNormal(axis) * Vec3(sine * float(azimuth.cos), sine * float(azimuth.sin), cosine));
+    return glm::normalize(basisFromNormal(axis) * Vec3(sine * float(azimuth.cos), sine * float(azimuth.sin), cosine));
 }
 
 Vec3 lobeDirection(const Surface& surface, const Vec3& toViewer, UnitPoint xi)
 {
     const float alpha = lobeAlpha(surface);
-    const Mat3 frame = frameFromNormal(surface.normal);
-    const Vec3 viewer = glm::transpose(frame) * toViewer;
+    const Mat3 basis = basisFromNormal(surface.normal);
+    const Vec3 viewer = glm::transpose(basis) * toViewer;
 
     // Stretched to a hemisphere, the visible normals are a disk seen from the viewer, its far half squeezed.
     const Vec3 stretched = glm::normalize(Vec3(alpha * viewer.x, alpha * viewer.y, std::max(viewer.z, 1e-6f)));
-    const Mat3 side = frameFromNormal(stretched);
+    const Mat3 side = basisFromNormal(stretched);
     const Disk disk = diskPoint(xi);
     // The squeezed axis must lie in the plane of the viewer and the pole.
     const float planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
@@ -60,7 +60,7 @@ Vec3 lobeDirection(const Surface& surface, const Vec3& toViewer, UnitPoint xi)
     const float z = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x - y * y));
     const Vec3 normal = disk.x * across + y * upward + z * stretched;
 
-    const Vec3 half = frame * glm::normalize(Vec3(alpha * normal.x, alpha * normal.y, std::max(0.0f, normal.z)));
+    const Vec3 half = basis * glm::normalize(Vec3(alpha * normal.x, alpha * normal.y, std::max(0.0f, normal.z)));
     return glm::normalize(mirrored(toViewer, half));
 }
 

@@ -8,7 +8,7 @@
 
 namespace lrsm {
 
-VoxelFrame fitVoxelFrame(const Aabb& bounds, int resolution)
+VoxelGrid fitVoxelGrid(const Aabb& bounds, int resolution)
 {
     if (resolution < 1 || resolution > 2048 || (resolution & (resolution - 1)) != 0)
         throw InputError("voxel.resolution", std::to_string(resolution) + " is not a power of two in 1..2048");
@@ -25,17 +25,17 @@ VoxelFrame fitVoxelFrame(const Aabb& bounds, int resolution)
     if (longest == 0.0) longest = 1.0;
     const double margin = std::min(2.0, resolution / 4.0);
 
-    VoxelFrame frame;
-    frame.resolution = resolution;
-    frame.voxelSize = float(longest / (resolution - 2.0 * margin));
-    if (!std::isnormal(frame.voxelSize))
+    VoxelGrid grid;
+    grid.resolution = resolution;
+    grid.voxelSize = float(longest / (resolution - 2.0 * margin));
+    if (!std::isnormal(grid.voxelSize))
         throw InputError("voxel grid", "the scene's longest side is " + std::to_string(longest) + " m; scale it to fit float32");
-    const double halfEdge = 0.5 * double(frame.voxelSize) * resolution;
+    const double halfEdge = 0.5 * double(grid.voxelSize) * resolution;
     for (int axis = 0; axis < 3; ++axis) {
-        frame.origin[axis] = float(0.5 * (double(low[axis]) + double(high[axis])) - halfEdge);
-        if (!std::isfinite(frame.origin[axis])) throw InputError("voxel grid", "the grid would reach beyond float32; scale the scene down");
+        grid.origin[axis] = float(0.5 * (double(low[axis]) + double(high[axis])) - halfEdge);
+        if (!std::isfinite(grid.origin[axis])) throw InputError("voxel grid", "the grid would reach beyond float32; scale the scene down");
     }
-    return frame;
+    return grid;
 }
 
 std::uint64_t BitGrid::countOccupied() const

@@ -11,35 +11,35 @@
 namespace lrsm {
 
 /// Where the voxels are: a cube of resolution^3 cubic voxels; voxel (x, y, z) spans origin + voxelSize * [x, x + 1] ...
-struct VoxelFrame {
+struct VoxelGrid {
     Vec3 origin{0.0f};       ///< world position of the corner of voxel (0, 0, 0)
     float voxelSize = 1.0f;  ///< metres
     int resolution = 1;
 
     Vec3 voxelsFromWorld(const Vec3& pWorld) const { return (pWorld - origin) / voxelSize; }
-    bool operator==(const VoxelFrame&) const = default;
+    bool operator==(const VoxelGrid&) const = default;
 };
 
 /// Cube centred on `bounds`: the longest side plus a margin of two voxels at either end (less where the resolution is below 8).
-VoxelFrame fitVoxelFrame(const Aabb& bounds, int resolution);
+VoxelGrid fitVoxelGrid(const Aabb& bounds, int resolution);
 
 /// Binary occupancy, one bit a voxel, in bricks of 4x4x4: bit (x&3) + 4 (y&3) + 16 (z&3) of word brick(x/4, y/4, z/4), bricks x-fastest.
 /// Resolutions below 4 use part of one brick.
 struct BitGrid {
-    VoxelFrame frame;
+    VoxelGrid grid;
     std::vector<std::uint64_t> bricks;
 
     static int bricksPerEdge(int resolution) { return (resolution + 3) / 4; }
     std::size_t brickIndex(int x, int y, int z) const
     {
-        const auto n = std::size_t(bricksPerEdge(frame.resolution));
+        const auto n = std::size_t(bricksPerEdge(grid.resolution));
         return (std::size_t(z >> 2) * n + std::size_t(y >> 2)) * n + std::size_t(x >> 2);
     }
     static int bitIndex(int x, int y, int z) { return (x & 3) | ((y & 3) << 2) | ((z & 3) << 4); }
     /// False outside the grid (border 0).
     bool occupied(int x, int y, int z) const
     {
-        const auto n = unsigned(frame.resolution);
+        const auto n = unsigned(grid.resolution);
         if (unsigned(x) >= n || unsigned(y) >= n || unsigned(z) >= n) return false;
         return (bricks[brickIndex(x, y, z)] >> bitIndex(x, y, z)) & 1u;
     }
@@ -60,14 +60,14 @@ inline std::size_t predictBitGridGpuBytes(int resolution)
 }
 
 template <class Visit>
-void forEachArray(const BitGrid& grid, Visit&& visit)
+void forEachArray(const BitGrid& bits, Visit&& visit)
 {
-    visit(grid.bricks, ArrayTraits{predictBitGridGpuBytes(grid.frame.resolution)});
+    visit(bits.bricks, ArrayTraits{predictBitGridGpuBytes(bits.grid.resolution)});
 }
 
-inline Counters countersOf(const BitGrid& grid)
+inline Counters countersOf(const BitGrid& bits)
 {
-    return {{"voxels_set", static_cast<double>(grid.countOccupied())}};
+    return {{"voxels_set", static_cast<double>(bits.countOccupied())}};
 }
 
 }  // namespace lrsm

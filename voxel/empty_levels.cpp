@@ -39,24 +39,24 @@ CellGrid halve(const CellGrid& fine)
 }
 
 /// OR over the 3x3x3 neighbourhood, one axis after the other.
-CellGrid dilate(CellGrid grid)
+CellGrid dilate(CellGrid bits)
 {
-    const std::size_t edge = std::size_t(grid.edge);
+    const std::size_t edge = std::size_t(bits.edge);
     for (const std::size_t stride : {std::size_t(1), edge, edge * edge}) {
-        CellGrid wider(grid.edge);
-        forRows(grid.edge, [&](int y, int z) {
-            for (int x = 0; x < grid.edge; ++x) {
-                const std::size_t i = grid.index(x, y, z);
+        CellGrid wider(bits.edge);
+        forRows(bits.edge, [&](int y, int z) {
+            for (int x = 0; x < bits.edge; ++x) {
+                const std::size_t i = bits.index(x, y, z);
                 const int along = stride == 1 ? x : stride == edge ? y : z;
-                std::uint8_t any = grid.cell[i];
-                if (along > 0) any |= grid.cell[i - stride];
-                if (along + 1 < grid.edge) any |= grid.cell[i + stride];
+                std::uint8_t any = bits.cell[i];
+                if (along > 0) any |= bits.cell[i - stride];
+                if (along + 1 < bits.edge) any |= bits.cell[i + stride];
                 wider.cell[i] = any;
             }
         });
-        grid = std::move(wider);
+        bits = std::move(wider);
     }
-    return grid;
+    return bits;
 }
 
 /// Bits of the neighbour at offset (dx, dy, dz) that lie within `reach` voxels of the brick.
@@ -81,7 +81,7 @@ struct Neighbours {
 /// Levels 0 and 1 read 1 and 2 voxels beyond the brick.
 std::uint8_t fineEmptyLevels(const BitGrid& base, const Neighbours& neighbours, int bx, int by, int bz)
 {
-    const int edge = BitGrid::bricksPerEdge(base.frame.resolution);
+    const int edge = BitGrid::bricksPerEdge(base.grid.resolution);
     std::uint64_t near = 0, far = 0;
     for (int k = 0; k < 27; ++k) {
         const int x = bx + k % 3 - 1, y = by + k / 3 % 3 - 1, z = bz + k / 9 - 1;
@@ -98,7 +98,7 @@ std::uint8_t fineEmptyLevels(const BitGrid& base, const Neighbours& neighbours, 
 
 std::vector<std::uint8_t> findEmptyLevels(const BitGrid& base)
 {
-    const int edge = BitGrid::bricksPerEdge(base.frame.resolution);
+    const int edge = BitGrid::bricksPerEdge(base.grid.resolution);
     std::vector<CellGrid> occupied;
     occupied.emplace_back(edge);
     forRows(edge, [&](int y, int z) {

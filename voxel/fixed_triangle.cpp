@@ -54,19 +54,19 @@ Polygon cut(const Polygon& in, std::size_t axis, double sign, double bound)
 
 }  // namespace
 
-FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const VoxelFrame& frame)
+FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const VoxelGrid& grid)
 {
     FixedPieces pieces;
     if (!isFinite(a) || !isFinite(b) || !isFinite(c)) return pieces;
 
-    const double scale = 1.0 / double(frame.voxelSize);
+    const double scale = 1.0 / double(grid.voxelSize);
     constexpr double limit = 4096.0;
     Polygon polygon;
     bool near = true;
     for (const Vec3* p : {&a, &b, &c}) {
         Point voxels;
         for (int axis = 0; axis < 3; ++axis) {
-            voxels[std::size_t(axis)] = (double((*p)[axis]) - double(frame.origin[axis])) * scale;
+            voxels[std::size_t(axis)] = (double((*p)[axis]) - double(grid.origin[axis])) * scale;
             near = near && std::abs(voxels[std::size_t(axis)]) < limit;
         }
         polygon.push(voxels);
@@ -74,7 +74,7 @@ FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const Vo
     if (!near) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             polygon = cut(polygon, axis, -1.0, -1.0);
-            polygon = cut(polygon, axis, 1.0, double(frame.resolution) + 1.0);
+            polygon = cut(polygon, axis, 1.0, double(grid.resolution) + 1.0);
         }
     }
     for (int k = 2; k < polygon.count; ++k)

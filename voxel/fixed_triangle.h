@@ -26,6 +26,6 @@ struct FixedPieces {
 
 /// World -> fixed point. A triangle with a non-finite vertex yields nothing; one that reaches beyond 4096 voxels is first cut to the grid
 /// plus one voxel around it, in double (the only inexact step; no scene that fits its frame takes it).
-FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const VoxelFrame& frame);
+FixedPieces fixedFromWorld(const Vec3& a, const Vec3& b, const Vec3& c, const VoxelGrid& grid);
 
 }  // namespace lrsm

@@ -53,18 +53,17 @@ float densityScale(const OpacityPyramid& pyramid, int level)
 
 OpacityPyramid buildPyramid(BitGrid base, const VoxelSettings& settings)
 {
-    assert(base.bricks.size() == brickCount(base.frame.resolution));
+    assert(base.bricks.size() == brickCount(base.grid.resolution));
     OpacityPyramid pyramid;
     pyramid.base = std::move(base);
     pyramid.axes = settings.axes;
     pyramid.storage = settings.storage;
     pyramid.mipFilter = settings.mipFilter;
-    Layout layout = layoutOf(pyramid.base.frame.resolution);
+    Layout layout = layoutOf(pyramid.base.grid.resolution);
     pyramid.levelOffset = std::move(layout.levelOffset);
 
-    requireMemory(
-        predictPyramidBytes({.resolution = pyramid.base.frame.resolution, .axes = settings.axes, .storage = settings.storage}) - bytesOf(pyramid.base),
-        "opacity pyramid", "lower voxel_resolution");
+    requireMemory(predictPyramidBytes({.resolution = pyramid.base.grid.resolution, .axes = settings.axes, .storage = settings.storage}) - bytesOf(pyramid.base),
+                  "opacity pyramid", "lower voxel_resolution");
     const std::size_t values = layout.texels * std::size_t(pyramid.channels());
     try {
         if (settings.storage == Storage::gpu)

@@ -35,7 +35,7 @@ struct OpacityPyramid {
 
     int levels() const { return int(levelOffset.size()); }
     int channels() const { return axes == OpacityAxes::directional ? 3 : 1; }
-    int resolutionAt(int level) const { return base.frame.resolution >> level; }
+    int resolutionAt(int level) const { return base.grid.resolution >> level; }
     std::size_t texelIndex(int level, int x, int y, int z) const
     {
         const auto n = std::size_t(resolutionAt(level));

@@ -140,7 +140,7 @@ void fillFromBits(OpacityPyramid& pyramid, Texel* texels)
 {
     const Levels<Texel> out{pyramid, texels};
     const BitGrid& base = pyramid.base;
-    const int edge = BitGrid::bricksPerEdge(base.frame.resolution);
+    const int edge = BitGrid::bricksPerEdge(base.grid.resolution);
     forSlices(edge, [&](int bz) {
         std::size_t index = std::size_t(bz) * std::size_t(edge) * std::size_t(edge);
         for (int by = 0; by < edge; ++by) {

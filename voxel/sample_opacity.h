@@ -18,7 +18,7 @@ class OpacitySampler {
         : bricks_(pyramid.base.bricks.data()),
           emptyLevels_(pyramid.emptyLevels.data()),
           levelOffset_(pyramid.levelOffset.data()),
-          resolution_(pyramid.base.frame.resolution),
+          resolution_(pyramid.base.grid.resolution),
           brickEdge_(std::size_t(BitGrid::bricksPerEdge(resolution_))),
           topLevel_(pyramid.levels() - 1)
     {

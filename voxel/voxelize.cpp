@@ -17,36 +17,36 @@ constexpr std::size_t kTrianglesPerTask = 1024;
 constexpr std::size_t kBigTriangleColumns = 16384;  ///< above: split by rows, so that two triangles of a floor keep all cores busy
 constexpr int kRowsPerTask = 16;
 
-BitGrid emptyGrid(const VoxelFrame& frame)
+BitGrid emptyGrid(const VoxelGrid& grid)
 {
-    BitGrid grid;
-    grid.frame = frame;
-    const auto edge = std::size_t(BitGrid::bricksPerEdge(frame.resolution));
+    BitGrid bits;
+    bits.grid = grid;
+    const auto edge = std::size_t(BitGrid::bricksPerEdge(grid.resolution));
     requireMemory(edge * edge * edge * sizeof(std::uint64_t), "voxel grid", "lower voxel_resolution");
     try {
-        grid.bricks.assign(edge * edge * edge, 0);
+        bits.bricks.assign(edge * edge * edge, 0);
     } catch (const std::bad_alloc&) {
         throw MachineError("voxel grid", "no memory for " + std::to_string(edge * edge * edge * 8) + " bytes; lower voxel.resolution");
     }
-    return grid;
+    return bits;
 }
 
 /// corners(i) gives the three world positions of triangle i.
 template <class Corners>
-void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Corners& corners)
+void voxelizeInto(BitGrid& bits, std::size_t count, Voxelization mode, const Corners& corners)
 {
     std::vector<std::vector<TriangleSetup>> bigOfChunk((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
     parallelFor(count, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::array<Vec3, 3> p = corners(i);
-            const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], grid.frame);
+            const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], bits.grid);
             for (int k = 0; k < pieces.count; ++k) {
-                const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], grid.frame.resolution, mode);
+                const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], bits.grid.resolution, mode);
                 if (setup.empty) continue;
                 if (setup.columnCount() > kBigTriangleColumns)
                     bigOfChunk[begin / kTrianglesPerTask].push_back(setup);
                 else
-                    voxelizeRows(setup, setup.cells[setup.rowAxis], mode, grid);
+                    voxelizeRows(setup, setup.cells[setup.rowAxis], mode, bits);
             }
         }
     });
@@ -63,7 +63,7 @@ void voxelizeInto(BitGrid& grid, std::size_t count, Voxelization mode, const Cor
         }
     }
     parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) voxelizeRows(*tasks[i].setup, tasks[i].rows, mode, grid);
+        for (std::size_t i = begin; i < end; ++i) voxelizeRows(*tasks[i].setup, tasks[i].rows, mode, bits);
     });
 }
 
@@ -73,21 +73,21 @@ BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 {
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)));
     checkBounds(scene.bounds);
-    BitGrid grid = emptyGrid(fitVoxelFrame(scene.bounds, settings.resolution));
+    BitGrid bits = emptyGrid(fitVoxelGrid(scene.bounds, settings.resolution));
     for (const Mesh& mesh : scene.meshes) {
-        voxelizeInto(grid, mesh.triangles.size(), settings.mode, [&](std::size_t i) {
+        voxelizeInto(bits, mesh.triangles.size(), settings.mode, [&](std::size_t i) {
             const auto& t = mesh.triangles[i];
             return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
         });
     }
-    return grid;
+    return bits;
 }
 
-BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelFrame& frame, Voxelization mode)
+BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode)
 {
-    BitGrid grid = emptyGrid(frame);
-    voxelizeInto(grid, corners.size() / 3, mode, [&](std::size_t i) { return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; });
-    return grid;
+    BitGrid bits = emptyGrid(grid);
+    voxelizeInto(bits, corners.size() / 3, mode, [&](std::size_t i) { return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; });
+    return bits;
 }
 
 }  // namespace lrsm

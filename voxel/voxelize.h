@@ -14,6 +14,6 @@ namespace lrsm {
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
 
 /// The same for one bare triangle list in world space: what tests drive.
-BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelFrame& frame, Voxelization mode);
+BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode);
 
 }  // namespace lrsm

@@ -92,7 +92,7 @@ struct DepthWalk {
 /// Sets bits, gathering those of one brick before touching memory.
 class BrickWriter {
   public:
-    explicit BrickWriter(BitGrid& grid) : bricks_(grid.bricks.data()) {}
+    explicit BrickWriter(BitGrid& bits) : bricks_(bits.bricks.data()) {}
     ~BrickWriter() { flush(); }
     BrickWriter(const BrickWriter&) = delete;
     BrickWriter& operator=(const BrickWriter&) = delete;
@@ -136,15 +136,15 @@ void setColumn(BrickWriter& writer, std::size_t brickBase, int bitBase, std::siz
 constexpr int kMaxResolution = 2048;
 
 template <Voxelization mode>
-void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& grid)
+void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& bits)
 {
     const std::size_t u = t.columnAxis, v = t.rowAxis, w = t.depthAxis;
     const Span columns = t.cells[u], depths = t.cells[w];
     constexpr bool overlap = mode != Voxelization::raster;  // raster looks at one projection only
 
-    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(grid.frame.resolution));
+    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(bits.grid.resolution));
     const std::size_t stride[3] = {1, edge, edge * edge};
-    BrickWriter writer(grid);
+    BrickWriter writer(bits);
     if (t.boxIsExact) {
         for (int j = rows.lo; j <= rows.hi; ++j)
             for (int i = columns.lo; i <= columns.hi; ++i)
@@ -238,12 +238,12 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
     return t;
 }
 
-void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& grid)
+void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& bits)
 {
     switch (mode) {
-    case Voxelization::conservative: return voxelizeRowsAs<Voxelization::conservative>(setup, rows, grid);
-    case Voxelization::thin: return voxelizeRowsAs<Voxelization::thin>(setup, rows, grid);
-    case Voxelization::raster: return voxelizeRowsAs<Voxelization::raster>(setup, rows, grid);
+    case Voxelization::conservative: return voxelizeRowsAs<Voxelization::conservative>(setup, rows, bits);
+    case Voxelization::thin: return voxelizeRowsAs<Voxelization::thin>(setup, rows, bits);
+    case Voxelization::raster: return voxelizeRowsAs<Voxelization::raster>(setup, rows, bits);
     }
 }
 

@@ -25,6 +25,6 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
 
 /// Sets the voxels of rows [rows.lo, rows.hi] (within cells[rowAxis]). May run concurrently on one grid: bits are set with relaxed
 /// atomic ORs, which commute.
-void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& grid);
+void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& bits);
 
 }  // namespace lrsm

@@ -32,13 +32,13 @@ bool changePixels(ScalingPoint& point, int divisor, const ScalingBase&)
 
 bool changeCones(ScalingPoint& point, int count, const ScalingBase&)
 {
-    point.settings.cones.count = count;
+    point.settings.cones.set.count = count;
     return true;
 }
 
 bool changeSets(ScalingPoint& point, int sets, const ScalingBase&)
 {
-    point.settings.cones.setsPerPixel = sets;
+    point.settings.cones.set.setsPerPixel = sets;
     return true;
 }
 
@@ -123,7 +123,7 @@ std::string describeFixed(const std::string& grows, const ScalingBase& base, con
     say("voxels", "voxels " + std::to_string(s.voxel.resolution) + "^3");
     say("rsm", "RSM " + std::to_string(s.rsm.resolution) + "^2");
     say("layers", std::to_string(s.layers.depthLayers) + "x" + std::to_string(s.layers.normalLayers) + " layers");
-    say("cones", std::to_string(s.cones.count) + " cones");
+    say("cones", std::to_string(s.cones.set.count) + " cones");
     return text;
 }
 

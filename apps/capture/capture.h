@@ -51,7 +51,7 @@ struct Capture {
     Requirements needs;
     int width = 0, height = 0;
     Camera camera;
-    VoxelFrame grid;
+    VoxelGrid grid;
     std::vector<CapturedLight> lights;
     std::vector<Material> materials;   ///< texture references point into a list that is not stored
     std::vector<CapturedPass> passes;  ///< in the order of the data flow

@@ -89,7 +89,7 @@ Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name)
 
 Image<Vec3> irradianceFromCapture(const Capture& capture)
 {
-    return pictureFromCapture(capture, capture.settings.cones.filter ? "filter.irradiance" : "cones.irradiance");
+    return pictureFromCapture(capture, capture.settings.cones.set.filter ? "filter.irradiance" : "cones.irradiance");
 }
 
 }  // namespace lrsm

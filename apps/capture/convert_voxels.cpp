@@ -8,15 +8,15 @@ namespace lrsm {
 namespace {
 
 /// Rows of voxels along x, one bit each, from bricks.
-void unpackRows(const BitGrid& grid, Buffer& buffer)
+void unpackRows(const BitGrid& bits, Buffer& buffer)
 {
     auto* to = allocate<std::uint8_t>(buffer);
-    const int n = grid.frame.resolution;
+    const int n = bits.grid.resolution;
     const std::size_t rowBytes = buffer.shape[2];
     for (int z = 0; z < n; ++z)
         for (int y = 0; y < n; ++y, to += rowBytes)
             for (int x = 0; x < n; x += 4) {
-                const std::uint64_t brick = grid.bricks[grid.brickIndex(x, y, z)];
+                const std::uint64_t brick = bits.bricks[bits.brickIndex(x, y, z)];
                 const auto four = static_cast<unsigned>(brick >> BitGrid::bitIndex(0, y, z)) & 15u;
                 to[x / 8] = static_cast<std::uint8_t>(to[x / 8] | four << (x & 7));
             }
@@ -47,26 +47,26 @@ void toBuffers(const OpacityPyramid& opacity, std::vector<Buffer>& buffers)
 
 BitGrid bitsFromCapture(const Capture& capture)
 {
-    BitGrid grid;
-    grid.frame = capture.grid;
-    const int n = grid.frame.resolution;
+    BitGrid bits;
+    bits.grid = capture.grid;
+    const int n = bits.grid.resolution;
     const auto edge = static_cast<std::size_t>(BitGrid::bricksPerEdge(n)), rowBytes = static_cast<std::size_t>(n + 7) / 8;
     if (!capture.find("voxel.bits")) {
-        grid.bricks = copyFrom<std::uint64_t>(capture, "voxel.bricks", Dtype::u8, edge * edge * edge);
-        return grid;
+        bits.bricks = copyFrom<std::uint64_t>(capture, "voxel.bricks", Dtype::u8, edge * edge * edge);
+        return bits;
     }
     // The plain rows count where both are given: they are what other programs write.
     const auto rows = valuesOf<std::uint8_t>(capture, "voxel.bits", Dtype::u1, static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * rowBytes);
-    grid.bricks.assign(edge * edge * edge, 0);
+    bits.bricks.assign(edge * edge * edge, 0);
     std::size_t row = 0;
     for (int z = 0; z < n; ++z)
         for (int y = 0; y < n; ++y, row += rowBytes)
             for (int x = 0; x < n; x += 4) {
                 const auto inGrid = n < 4 ? (1u << n) - 1u : 15u;
                 const std::uint64_t four = static_cast<unsigned>(rows[row + static_cast<std::size_t>(x / 8)] >> (x & 7)) & inGrid;
-                grid.bricks[grid.brickIndex(x, y, z)] |= four << BitGrid::bitIndex(0, y, z);
+                bits.bricks[bits.brickIndex(x, y, z)] |= four << BitGrid::bitIndex(0, y, z);
             }
-    return grid;
+    return bits;
 }
 
 OpacityPyramid opacityFromCapture(const Capture& capture)

@@ -208,12 +208,13 @@ void describeLight(Catalogue& out, int width, int height, const ConeSettings& co
     const Names rgb = {"r", "g", "b"}, rgba = {"r", "g", "b", "opacity"};
     const std::string radiance = "W/(m^2 sr)", irradiance = "W/m^2", eye = "picture";
     out.picture("direct.radiance", "direct", width, height, rgb, {"direct light reflected towards the eye", eye, radiance}, tolerances::direct());
-    out.add("cones.diffuse", "cones", Dtype::f4, {sz(cones.count * cones.setsPerPixel), sz(height), sz(width), 4}, {"cone", "row", "column", "component"}, rgba,
-            {"I of Eq. 1 and opacity of each diffuse cone, in the order of their sum", eye, radiance}, tolerances::cones());
+    out.add("cones.diffuse", "cones", Dtype::f4, {sz(cones.set.count * cones.set.setsPerPixel), sz(height), sz(width), 4},
+            {"cone", "row", "column", "component"}, rgba, {"I of Eq. 1 and opacity of each diffuse cone, in the order of their sum", eye, radiance},
+            tolerances::cones());
     out.picture("cones.irradiance", "cones", width, height, rgb, {"pi times the weighted sum of the diffuse cones", eye, irradiance}, tolerances::cones());
     out.picture("cones.opacity", "cones", width, height, {}, {"weighted mean opacity of the diffuse cones", eye, ""}, tolerances::coneOpacity());
     if (specular) out.picture("cones.specular", "cones", width, height, rgba, {"I and opacity of the specular cone", eye, radiance}, tolerances::cones());
-    if (cones.filter)
+    if (cones.set.filter)
         out.picture("filter.irradiance", "filter", width, height, rgb, {"irradiance averaged over 4x4 pixels of the same surface", eye, irradiance},
                     tolerances::filter());
     out.picture("composite.diffuse", "composite", width, height, rgb, {"albedo irradiance / pi", eye, radiance}, tolerances::product());

@@ -158,7 +158,7 @@ Json conesJson(const Capture& c, const GatherPlan& plan)
     for (std::size_t i = 0; i < plan.specularSchedules.size(); ++i)
         specular.push_back({{"tan_half", plan.specularSchedules[i].tanHalf}, {"schedule", plan.ringSchedules.size() + i}});
     const ConeSettings& cones = c.settings.cones;
-    return {{"a_pixel", cones.count * cones.setsPerPixel}, {"rotations", kRotations}, {"rings", rings}, {"specular", specular}};
+    return {{"a_pixel", cones.set.count * cones.set.setsPerPixel}, {"rotations", kRotations}, {"rings", rings}, {"specular", specular}};
 }
 
 Json gaussianJson(const NormalCdf& phi)

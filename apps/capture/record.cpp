@@ -66,7 +66,7 @@ std::vector<std::string> inputsOf(const std::string& pass, std::size_t lights, c
     if (pass == "cones") return withLights({"tables", "gbuffer", "voxelize", "voxel mips"}, "lrsm ");
     if (pass == "filter") return {"gbuffer", "cones"};
     std::vector<std::string> composite = {"tables", "gbuffer", "direct", "cones"};
-    if (settings.cones.filter) composite.push_back("filter");
+    if (settings.cones.set.filter) composite.push_back("filter");
     return composite;
 }
 
@@ -149,7 +149,7 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     RenderOptions render{.width = options.width, .height = options.height, .watch = {.progress = options.progress, .observe = {}}, .method = {}};
     render.watch.observe = [&](const std::string& pass, const PassOutput& output) {
         if (const auto* opacity = output.as<OpacityPyramid>()) {
-            capture.grid = opacity->base.frame;
+            capture.grid = opacity->base.grid;
             toBuffers(*opacity, buffers);
         } else if (const auto* rsm = output.as<Rsm>()) {
             toBuffers(*rsm, projections.size(), buffers);
@@ -166,7 +166,7 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     const Frame frame = renderFrame(scene, camera, settings, render);
     toBuffers(frame.gbuffer, buffers);
     toBuffers(frame.direct, "direct.radiance", buffers);
-    if (settings.cones.filter) toBuffers(frame.irradiance, "filter.irradiance", buffers);
+    if (settings.cones.set.filter) toBuffers(frame.irradiance, "filter.irradiance", buffers);
     toBuffers(frame.indirectDiffuse, "composite.diffuse", buffers);
     toBuffers(frame.indirectSpecular, "composite.specular", buffers);
     toBuffers(frame.combined, "composite.combined", buffers);

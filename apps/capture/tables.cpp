@@ -53,10 +53,10 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
 {
     CaptureTables tables;
     tables.plan = planGather(settings.cones, needs, settings.voxel.resolution);
-    tables.phi = NormalCdf(settings.cones.gaussian, settings.cones.gaussianTableSize);
+    tables.phi = NormalCdf(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize);
     const auto cones = static_cast<std::size_t>(tables.plan.cones.count);
     tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);
-    tables.rotation = rotations(settings.cones.rotation);
+    tables.rotation = rotations(settings.cones.set.rotation);
     addSchedules(tables);
     if (const std::vector<float>& phi = tables.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
     if (needs.specular)

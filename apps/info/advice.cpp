@@ -28,7 +28,7 @@ std::string brief(const char* format, double a, double b = 0.0)
 double frameWork(const SceneAnalysis& analysis, const Settings& settings, const std::vector<int>& layers, int width, int height)
 {
     const double voxels = settings.voxel.resolution / 512.0, texels = settings.rsm.resolution / 1024.0;
-    const double pixels = analysis.coveredFraction * width * height, cones = double(settings.cones.count) * settings.cones.setsPerPixel;
+    const double pixels = analysis.coveredFraction * width * height, cones = double(settings.cones.set.count) * settings.cones.set.setsPerPixel;
     double meanLayers = 0.0, work = 120.0 * voxels * voxels * voxels;
     for (const int count : layers) {
         work += (110.0 + 25.0 + 11.0 * count) * texels * texels;
@@ -127,7 +127,7 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
                     brief("LRSM texels are %.2g of the finest tap wide: next to nothing reads the base level", coarsest));
 
     int voxels = settings.voxel.resolution;
-    float start = settings.cones.startVoxels;
+    float start = settings.cones.march.startVoxels;
     for (double ratio = finest; ratio >= kFineVoxels && voxels > kLeastResolution; ratio *= 0.5) {
         voxels /= 2;
         if (start > 2.0f) start = std::max(2.0f, start - 1.0f);  // near the same length, as the presets have it
@@ -135,8 +135,8 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
     if (voxels == settings.voxel.resolution) return;
     adviser.add("voxel_resolution", settings.voxel.resolution, voxels,
                 brief("LRSM texels are %.2g voxels wide: the light's map resolves less than the voxels", finest));
-    if (start != settings.cones.startVoxels)
-        adviser.add("start_voxels", brief("%g", double(settings.cones.startVoxels)), brief("%g", double(start)), "goes with the wider voxels");
+    if (start != settings.cones.march.startVoxels)
+        adviser.add("start_voxels", brief("%g", double(settings.cones.march.startVoxels)), brief("%g", double(start)), "goes with the wider voxels");
 }
 
 }  // namespace

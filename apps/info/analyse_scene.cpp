@@ -147,11 +147,11 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
     const FloatState state;
     checkScene(scene);
     validate(settings);
-    const VoxelFrame frame = fitVoxelFrame(scene.bounds, settings.voxel.resolution);
-    const double voxelSize = double(frame.voxelSize);
+    const VoxelGrid grid = fitVoxelGrid(scene.bounds, settings.voxel.resolution);
+    const double voxelSize = double(grid.voxelSize);
     SceneAnalysis out;
     out.needs = needs;
-    out.finestTap = narrowestTap(settings, frame.resolution) * voxelSize;
+    out.finestTap = narrowestTap(settings, grid.resolution) * voxelSize;
     for (const Light& light : scene.lights) {
         const Rsm rsm = renderRsm(scene, light, needs, settings.rsm);
         out.lights.push_back(analyseLight(light, rsm, buildLrsm(rsm, settings.layers), kMapTapVoxels * voxelSize));

@@ -117,7 +117,6 @@ Words companionsOf(const std::string& key, const std::string& value)
                                                              {"backface", paper},
                                                              {"v_radius_scale", paper},
                                                              {"transmittance", slab},
-                                                             {"subtract_own_plane", slab},
                                                              {"emitter_delay_taps", slab},
                                                              {"emitter_delay_voxels", slab},
                                                              {"emitter_slant_cap", slab},

@@ -30,13 +30,13 @@ Vec3 lrsmRadiance(const Lrsm& lrsm, const LrsmProbe& probe, const ConeSettings& 
     const float range = lrsm.projection.depthRange();
     const Vec3 toLight = directionToLight(lrsm.projection, probe.position);
     const float footprint = std::max(probe.footprint, 2.0f * at.texelSize);  // an LRSM texel is two RSM texels wide
-    const float level = lrsmLevel(footprint, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel);
-    const LrsmFootprint taps = makeFootprint(lrsm, at.u, at.v, level, settings.filterFraction);
+    const float level = lrsmLevel(footprint, at.texelSize, settings.gather.rsmLevelBias, settings.gather.rsmMinLevel);
+    const LrsmFootprint taps = makeFootprint(lrsm, at.u, at.v, level, settings.march.filterFraction);
 
     Vec3 sum(0.0f);
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
         const LayerRange& bounds = lrsm.ranges[std::size_t(layer)];
-        const float share = settings.layerSelection == LayerSelection::touched ? 1.0f : decay(bounds, at.depth);
+        const float share = settings.gather.layerSelection == LayerSelection::touched ? 1.0f : decay(bounds, at.depth);
         if (!(share > 0.0f)) continue;
         const FilteredTexel texel = sampleLayer(lrsm, layer, taps);
         sum += (share * surfaceVisibility(texel, bounds, range, at.depth * range, toLight, probe.direction, footprint, phi)) * texel.radiance;

@@ -21,9 +21,9 @@ struct GatherDirection {
 std::vector<GatherDirection> gatherDirections(int strata)
 {
     ConeSettings dense;
-    dense.estimator = Estimator::slab;
-    dense.rotation = Rotation::strata;
-    dense.count = strata;
+    dense.march.estimator = Estimator::slab;
+    dense.set.rotation = Rotation::strata;
+    dense.set.count = strata;
     const ConeSet set = makeConeSet(dense);
 
     std::vector<GatherDirection> directions;
@@ -75,7 +75,7 @@ Arriving alongExactRay(const SplitWorld& world, Tracer& tracer, const Surface& s
     if (!hit) return arriving;
 
     arriving.hit = true;
-    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.opacity.base.frame.voxelSize};
+    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.opacity.base.grid.voxelSize};
     for (const Lrsm& lrsm : world.lrsms) arriving.radiance += lrsmRadiance(lrsm, probe, world.cones, world.phi);
     return arriving;
 }
@@ -83,21 +83,21 @@ Arriving alongExactRay(const SplitWorld& world, Tracer& tracer, const Surface& s
 /// The exact radiance of what lies in, or next to, the first occupied voxels along the ray.
 Arriving alongVoxelRay(const SplitWorld& world, Tracer& tracer, const Surface& surface, const Vec3& direction)
 {
-    const VoxelFrame& frame = world.opacity.base.frame;
+    const VoxelGrid& grid = world.opacity.base.grid;
     const Vec3 n = glm::abs(surface.geometricNormal);
-    const float offset = world.cones.normalOffsetVoxels * (n.x + n.y + n.z) * frame.voxelSize;
+    const float offset = world.cones.march.normalOffsetVoxels * (n.x + n.y + n.z) * grid.voxelSize;
     const Vec3 origin = surface.position + surface.geometricNormal * offset;
-    const std::optional<VoxelRun> run = firstOccupied(world.opacity, frame.voxelsFromWorld(origin), direction, world.cones.startVoxels);
+    const std::optional<VoxelRun> run = firstOccupied(world.opacity, grid.voxelsFromWorld(origin), direction, world.cones.march.startVoxels);
     if (!run) return {};
 
-    const float tNear = std::max(0.0f, run->enter - kVoxelDiagonal) * frame.voxelSize, tFar = (run->leave + kVoxelDiagonal) * frame.voxelSize;
+    const float tNear = std::max(0.0f, run->enter - kVoxelDiagonal) * grid.voxelSize, tFar = (run->leave + kVoxelDiagonal) * grid.voxelSize;
     bool surfaceInReach = false;
     return {exactRadiance(tracer, {origin, direction, tNear, tFar, RayKind::bounce}, surfaceInReach), true};
 }
 
 PixelLight gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& surface)
 {
-    const Mat3 basis = frameFromNormal(surface.normal);
+    const Mat3 basis = basisFromNormal(surface.normal);
     PixelLight sum;
     for (const GatherDirection& sample : world.directions) {
         const Vec3 direction = basis * sample.local;
@@ -146,7 +146,7 @@ Gathered gatherByRays(const GatherInput& input, const SplitSettings& split, Pass
                          .split = split,
                          .lights = {},
                          .directions = gatherDirections(split.strata),
-                         .phi = NormalCdf(cones.gaussian, cones.gaussianTableSize)};
+                         .phi = NormalCdf(cones.gather.gaussian, cones.gather.gaussianTableSize)};
         for (const Light& light : input.scene.lights) world.lights.emplace_back(light);
         return gatherRays(input.gbuffer, world);
     });

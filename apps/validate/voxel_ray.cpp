@@ -70,15 +70,15 @@ int emptyBlock(const OpacityPyramid& opacity, const IVec3& cell)
 
 std::optional<VoxelRun> firstOccupied(const OpacityPyramid& opacity, const Vec3& origin, const Vec3& direction, float start)
 {
-    const BitGrid& grid = opacity.base;
-    const int n = grid.frame.resolution;
+    const BitGrid& bits = opacity.base;
+    const int n = bits.grid.resolution;
     const Span span = clipToGrid(origin, direction, start, static_cast<float>(n));
     if (!(span.begin < span.end)) return {};
 
     Walk walk{origin, direction, 1.0f / direction, span.begin};
     walk.enterAt(IVec3(0), IVec3(n - 1));
     const auto inside = [&] { return glm::all(glm::greaterThanEqual(walk.cell, IVec3(0))) && glm::all(glm::lessThan(walk.cell, IVec3(n))); };
-    const auto occupied = [&] { return grid.occupied(walk.cell.x, walk.cell.y, walk.cell.z); };
+    const auto occupied = [&] { return bits.occupied(walk.cell.x, walk.cell.y, walk.cell.z); };
     for (; inside(); walk.leaveBlock(emptyBlock(opacity, walk.cell))) {
         if (!occupied()) continue;
         VoxelRun run{walk.t, walk.t};

@@ -57,7 +57,7 @@ ConeRing paperRing(int ring, int rings, int count, const ConeSettings& settings)
     const double axis = single ? (count == 1 ? 0.0 : 0.5 * kHalfPi) : 2 * ring * h;
     const double halfAngle = single ? (count == 1 ? kHalfPi * 2.0 / 3.0 : 0.5 * kHalfPi) : h;
     r.axisAngle = static_cast<float>(axis);
-    r.tanHalf = tracedTangent(halfAngle, settings.apertureScale);
+    r.tanHalf = tracedTangent(halfAngle, settings.set.apertureScale);
     r.weight = static_cast<float>((sinOuter * sinOuter - sinInner * sinInner) / count);
     return r;
 }
@@ -72,7 +72,7 @@ ConeRing slabRing(int first, int count, int total, const ConeSettings& settings)
     r.outerAngle = static_cast<float>(arcCosine(cosOuter));
     r.axisAngle = 0.5f * (r.innerAngle + r.outerAngle);
     // Cap of the stratum's own solid angle 2 pi (cosInner - cosOuter) / count = 2 pi (1 - cos a).
-    r.tanHalf = tracedTangent(arcCosine(1.0 - (cosInner - cosOuter) / count), settings.apertureScale);
+    r.tanHalf = tracedTangent(arcCosine(1.0 - (cosInner - cosOuter) / count), settings.set.apertureScale);
     r.weight = static_cast<float>(1.0 / total);
     return r;
 }
@@ -99,14 +99,14 @@ std::vector<int> ringCounts(int count)
 
 ConeSet makeConeSet(const ConeSettings& settings)
 {
-    const bool slab = settings.estimator == Estimator::slab;
-    const std::vector<int> counts = ringCounts(settings.count);
+    const bool slab = settings.march.estimator == Estimator::slab;
+    const std::vector<int> counts = ringCounts(settings.set.count);
     ConeSet set;
-    set.count = settings.count;
+    set.count = settings.set.count;
     int first = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        ConeRing ring =
-            slab ? slabRing(first, counts[i], settings.count, settings) : paperRing(static_cast<int>(i), static_cast<int>(counts.size()), counts[i], settings);
+        ConeRing ring = slab ? slabRing(first, counts[i], settings.set.count, settings)
+                             : paperRing(static_cast<int>(i), static_cast<int>(counts.size()), counts[i], settings);
         ring.first = first;
         first += ring.count;
         set.rings.push_back(ring);
@@ -117,13 +117,13 @@ ConeSet makeConeSet(const ConeSettings& settings)
         for (const ConeRing& ring : set.rings) {
             const double sinInner = sinCos(ring.innerAngle).sin, sinOuter = sinCos(ring.outerAngle).sin;
             for (int k = 0; k < ring.count; ++k) {
-                if (settings.rotation == Rotation::strata) {
+                if (settings.set.rotation == Rotation::strata) {
                     // Uniform in the disc of Malley's method: cosine-weighted over the cone's share of the ring.
                     const double r2 = sinInner * sinInner + (sinOuter * sinOuter - sinInner * sinInner) * jitter.u;
                     set.directions.push_back(directionAt(std::sqrt(1.0 - r2), std::sqrt(r2), kTwoPi * (k + jitter.v) / ring.count));
                 } else {
                     const SinCos axis = sinCos(ring.axisAngle);
-                    const double turn = settings.rotation == Rotation::azimuth ? kTwoPi * rotation / kRotations : 0.0;
+                    const double turn = settings.set.rotation == Rotation::azimuth ? kTwoPi * rotation / kRotations : 0.0;
                     set.directions.push_back(directionAt(axis.cos, axis.sin, kTwoPi * k / ring.count + turn));
                 }
             }
@@ -143,8 +143,8 @@ int rotationOfPixel(int x, int y, Rotation rotation)
 float specularTanHalf(const ConeSettings& settings, float roughness)
 {
     constexpr float kWidest = 1.7320508f;  // tan 60 degrees
-    if (settings.specularAperture == SpecularAperture::fixed)
-        return static_cast<float>(tangent(0.5 * double(settings.specularApertureDegrees) * kHalfPi / 90.0));
+    if (settings.specular.aperture == SpecularAperture::fixed)
+        return static_cast<float>(tangent(0.5 * double(settings.specular.apertureDegrees) * kHalfPi / 90.0));
     const float alpha = roughness * roughness;
     return alpha < 1.0f ? std::min(kWidest, 2.0f * alpha / (1.0f - alpha * alpha)) : kWidest;
 }

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-/// Cone sets over the hemisphere about a receiver's normal (z of the tangent frame of frameFromNormal).
+/// Cone sets over the hemisphere about a receiver's normal (z of the tangent frame of basisFromNormal).
 ///
 /// The hemisphere is cut into rings of equal polar width: one cap of half-angle h about the normal, then rings of width 2h, with
 /// h = 90 degrees / (2 rings - 1); each ring is shared evenly by its cones, which sit on its middle. Six cones give the paper's set: one of

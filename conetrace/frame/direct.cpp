@@ -104,9 +104,9 @@ float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, 
 
 float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
 {
-    const VoxelFrame& frame = opacity.base.frame;
-    const Vec3 origin = frame.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
-    const float end = std::min(distance / frame.voxelSize, exitDistance(origin, toLight, float(frame.resolution)));
+    const VoxelGrid& grid = opacity.base.grid;
+    const Vec3 origin = grid.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
+    const float end = std::min(distance / grid.voxelSize, exitDistance(origin, toLight, float(grid.resolution)));
 
     float transmittance = 1.0f;
     for (float t = kStartVoxels; t < end && transmittance > kTransmittanceCutoff;) {

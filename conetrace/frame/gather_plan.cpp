@@ -24,7 +24,7 @@ GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, i
     const float reach = kCubeDiagonal * static_cast<float>(gridResolution);
     for (const ConeRing& ring : plan.cones.rings) plan.ringSchedules.push_back(makeSchedule(settings, ring.tanHalf, reach));
     if (needs.specular) {
-        const int classes = settings.specularAperture == SpecularAperture::fixed ? 1 : kRoughnessClasses;
+        const int classes = settings.specular.aperture == SpecularAperture::fixed ? 1 : kRoughnessClasses;
         for (int i = 0; i < classes; ++i) {
             const float roughness = classes > 1 ? static_cast<float>(i) / static_cast<float>(classes - 1) : 0.0f;
             plan.specularSchedules.push_back(makeSchedule(settings, specularTanHalf(settings, roughness), reach));

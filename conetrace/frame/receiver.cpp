@@ -4,16 +4,16 @@
 
 namespace lrsm {
 
-Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& grid, const ConeSettings& settings, int x, int y)
+Receiver receiverAt(const GBuffer& gbuffer, const VoxelGrid& grid, const ConeSettings& settings, int x, int y)
 {
     const std::size_t pixel = gbuffer.position.index(x, y);
     Receiver receiver;
     receiver.position = gbuffer.position.texels[pixel];
     receiver.geometricNormal = gbuffer.geometricNormal.texels[pixel];
     receiver.normal = gbuffer.normal.texels[pixel];
-    receiver.originWorld = receiver.position + receiver.geometricNormal * (settings.normalOffsetVoxels * grid.voxelSize);
+    receiver.originWorld = receiver.position + receiver.geometricNormal * (settings.march.normalOffsetVoxels * grid.voxelSize);
     receiver.originVoxels = grid.voxelsFromWorld(receiver.originWorld);
-    receiver.rotation = rotationOfPixel(x, y, settings.rotation);
+    receiver.rotation = rotationOfPixel(x, y, settings.set.rotation);
     return receiver;
 }
 

@@ -13,6 +13,6 @@ struct Receiver {
     Vec3 originVoxels{0.0f}, originWorld{0.0f};  ///< the cones' apex: off the surface by normalOffsetVoxels
     int rotation = 0;                            ///< of the cone set, 0 .. kRotations - 1
 };
-Receiver receiverAt(const GBuffer& gbuffer, const VoxelFrame& grid, const ConeSettings& settings, int x, int y);
+Receiver receiverAt(const GBuffer& gbuffer, const VoxelGrid& grid, const ConeSettings& settings, int x, int y);
 
 }  // namespace lrsm

@@ -13,8 +13,8 @@ MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
 {
     MarchStep step;
     step.middle = t;
-    step.diameter = std::max(settings.minDiameterVoxels, 2.0f * t * tanHalf);
-    const double level = std::max(0.0, log2Exact(double(step.diameter)) + double(settings.voxelLevelBias));
+    step.diameter = std::max(settings.march.minDiameterVoxels, 2.0f * t * tanHalf);
+    const double level = std::max(0.0, log2Exact(double(step.diameter)) + double(settings.march.voxelLevelBias));
     step.level = static_cast<float>(level);
     step.tapWidth = static_cast<float>(exp2Exact(level));
     return step;
@@ -26,7 +26,7 @@ MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
     std::ostringstream text;
     text << "the step is lost in float32 at " << t << " voxels from the receiver; raise step or min_diameter_voxels";
     std::ostringstream place;
-    place << "settings step=" << settings.step << ", min_diameter_voxels=" << settings.minDiameterVoxels;
+    place << "settings step=" << settings.march.step << ", min_diameter_voxels=" << settings.march.minDiameterVoxels;
     throw InputError(place.str(), text.str());
 }
 
@@ -36,18 +36,18 @@ MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float re
 {
     MarchSchedule schedule;
     schedule.tanHalf = tanHalf;
-    const bool slab = settings.estimator == Estimator::slab;
+    const bool slab = settings.march.estimator == Estimator::slab;
 
-    float t = settings.startVoxels;
+    float t = settings.march.startVoxels;
     if (slab && t > 0.0f) {
         MarchStep first = stepAt(settings, tanHalf, 0.5f * t);
         first.end = t;
         first.readVoxels = false;
         schedule.steps.push_back(first);
     }
-    while (t < reachVoxels && static_cast<int>(schedule.steps.size()) < settings.maxSteps) {
+    while (t < reachVoxels && static_cast<int>(schedule.steps.size()) < settings.march.maxSteps) {
         // The diameter at the segment's start gives its length: a segment grows with the cone.
-        const float length = settings.step * std::max(settings.minDiameterVoxels, 2.0f * t * tanHalf);
+        const float length = settings.march.step * std::max(settings.march.minDiameterVoxels, 2.0f * t * tanHalf);
         MarchStep step = stepAt(settings, tanHalf, slab ? t + 0.5f * length : t);
         step.begin = t;
         step.end = t + length;

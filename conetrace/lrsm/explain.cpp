@@ -57,8 +57,8 @@ template <Estimator estimator>
 std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, int x, int y)
 {
     const std::size_t pixel = gbuffer.position.index(x, y);
-    const GenericSampler sampler{world.opacity, world.settings.filterFraction};
-    const Receiver receiver = receiverAt(gbuffer, world.opacity.base.frame, world.settings, x, y);
+    const GenericSampler sampler{world.opacity, world.settings.march.filterFraction};
+    const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
     MarchScratch scratch;
     scratch.opticalDepth.resize(plan.longestSchedule);
     ConeCounts counts;
@@ -78,7 +78,7 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
                   gbuffer.objectId.texels[pixel], double(p.x), double(p.y), double(p.z), double(n.x), double(n.y), double(n.z), double(albedo.x),
                   double(albedo.y), double(albedo.z), receiver.rotation, kRotations) +
            format("distances and diameters in voxels of %.6g m; N is the crossing rate g and V the segment's share w in the slab estimator\n",
-                  double(world.opacity.base.frame.voxelSize)) +
+                  double(world.opacity.base.grid.voxelSize)) +
            recorder.text +
            format("\nirradiance (before the 4x4 filter) %.6g %.6g %.6g, opacity %.5f\n", double(diffuse.irradiance.x), double(diffuse.irradiance.y),
                   double(diffuse.irradiance.z), double(diffuse.opacity)) +
@@ -96,11 +96,11 @@ std::string explainLrsm(const GatherInput& input, int x, int y)
     const ConeSettings& settings = input.settings.cones;
     std::vector<Lrsm> lrsms;
     for (const Rsm& rsm : input.rsms) lrsms.push_back(buildLrsm(rsm, input.settings.layers));
-    const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.frame.resolution);
-    const NormalCdf phi(settings.gaussian, settings.gaussianTableSize);
+    const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.grid.resolution);
+    const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{input.opacity, lrsms, settings, phi};
-    return settings.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
-                                                 : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
+    return settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
+                                                       : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
 }
 
 }  // namespace lrsm

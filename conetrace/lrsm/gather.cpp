@@ -56,7 +56,7 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         for (int x = tileX * kTile; x < xEnd; ++x) {
             const std::size_t pixel = out.irradiance.index(x, y);
             if (!gbuffer.covered(pixel)) continue;
-            const Receiver receiver = receiverAt(gbuffer, world.opacity.base.frame, world.settings, x, y);
+            const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
             ResultRecorder recorder = to.diffuseAt(pixel);
             const PixelGather diffuse = gatherDiffuse<estimator>(world, sampler, plan, receiver, scratch, counts, recorder);
             out.irradiance.texels[pixel] = diffuse.irradiance;
@@ -87,8 +87,8 @@ template <Estimator estimator>
 void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     const OpacityPyramid& opacity = world.opacity;
-    if (opacity.storage != Storage::gpu || world.settings.filterFraction != FilterFraction::exact) {
-        gatherAll<estimator>(gbuffer, camera, world, GenericSampler{opacity, world.settings.filterFraction}, plan, out);
+    if (opacity.storage != Storage::gpu || world.settings.march.filterFraction != FilterFraction::exact) {
+        gatherAll<estimator>(gbuffer, camera, world, GenericSampler{opacity, world.settings.march.filterFraction}, plan, out);
     } else if (opacity.axes == OpacityAxes::directional) {
         const OpacitySampler<Storage::gpu, OpacityAxes::directional, FilterFraction::exact> sampler(opacity);
         gatherAll<estimator>(gbuffer, camera, world, sampler, plan, out);
@@ -116,16 +116,16 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
     if (needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
 
     if (record) {
-        record->cones = settings.count * settings.setsPerPixel;
+        record->cones = settings.set.count * settings.set.setsPerPixel;
         record->diffuse.assign(static_cast<std::size_t>(record->cones) * out.irradiance.texels.size(), Vec4(0.0f));
         record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
     }
 
-    const GatherPlan plan = planGather(settings, needs, opacity.base.frame.resolution);
-    const NormalCdf phi(settings.gaussian, settings.gaussianTableSize);
+    const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
+    const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{opacity, lrsms, settings, phi};
     ConeCounts counts;
-    if (settings.estimator == Estimator::slab)
+    if (settings.march.estimator == Estimator::slab)
         gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record, counts});
     else
         gatherWith<Estimator::paper>(gbuffer, camera, world, plan, {out, record, counts});
@@ -141,7 +141,7 @@ Gathered gatherLrsm(const GatherInput& input, PassLog& log)
         return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr);
     });
     log.show("cones", record);
-    gathered.filter4x4 = input.settings.cones.filter;
+    gathered.filter4x4 = input.settings.cones.set.filter;
     return gathered;
 }
 

@@ -36,8 +36,8 @@ template <Estimator estimator, class Sampler, class Recorder>
 PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, MarchScratch& scratch,
                           ConeCounts& counts, Recorder& recorder)
 {
-    const Mat3 basis = frameFromNormal(receiver.normal);
-    const int sets = world.settings.setsPerPixel;
+    const Mat3 basis = basisFromNormal(receiver.normal);
+    const int sets = world.settings.set.setsPerPixel;
     PixelGather sum;
     for (int s = 0; s < sets; ++s) {
         const auto directions = plan.cones.rotation((receiver.rotation + s * kRotations / sets) % kRotations);

@@ -13,9 +13,9 @@ inline constexpr float kStepOpacityMaxError = 1e-6f;
 inline float stepOpacity(float density, float lengthVoxels, const ConeSettings& settings)
 {
     const float a = std::min(density, 1.0f);
-    if (settings.opacity == OpacityModel::none || a <= 0.0f) return a;
+    if (settings.march.opacity == OpacityModel::none || a <= 0.0f) return a;
     if (a >= 1.0f) return 1.0f;
-    return 1.0f - fastExp2(settings.densityK * lengthVoxels * fastLog2(1.0f - a));
+    return 1.0f - fastExp2(settings.march.densityK * lengthVoxels * fastLog2(1.0f - a));
 }
 
 /// Error of a cone against the printed sum in double: of its opacity, and of its radiance over the largest that the map holds. Float positions in a
@@ -27,8 +27,8 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
                       Recorder& recorder)
 {
     const ConeSettings& settings = world.settings;
-    const VoxelFrame& frame = world.opacity.base.frame;
-    const float exit = gridExit(ray.originVoxels, ray.direction, frame.resolution);
+    const VoxelGrid& grid = world.opacity.base.grid;
+    const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
 
     ConeResult result;
     float transmittance = 1.0f;
@@ -39,7 +39,7 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
 
         // The sphere, pushed off the receiver's own plane.
         const float radius = 0.5f * step.diameter;
-        const Vec3 offset = ray.direction * step.middle + ray.receiverNormal * (settings.push * radius);
+        const Vec3 offset = ray.direction * step.middle + ray.receiverNormal * (settings.march.push * radius);
         const Vec3 pVoxels = ray.originVoxels + offset;
 
         // Occlusion.
@@ -47,12 +47,12 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
         const Vec3 tap = sampler(pVoxels, step.level);
         const float density = densityAlong(world.opacity, tap, ray.direction);
         const float alpha = stepOpacity(density, step.end - step.begin, settings);
-        const Vec3 pWorld = ray.originWorld + offset * frame.voxelSize;
+        const Vec3 pWorld = ray.originWorld + offset * grid.voxelSize;
         if constexpr (Recorder::active) recorder.step({&step, pWorld, density, alpha, transmittance});
         if (alpha <= 0.0f) continue;
 
         // Outgoing radiance of the sample, all lights (Algorithm 1), and Eq. 1.
-        const ConeSample sample{pWorld, radius * frame.voxelSize, settings.push == 0.0f ? -ray.direction : glm::normalize(ray.originWorld - pWorld)};
+        const ConeSample sample{pWorld, radius * grid.voxelSize, settings.march.push == 0.0f ? -ray.direction : glm::normalize(ray.originWorld - pWorld)};
         if constexpr (RecordsLookups<Recorder>) recorder.lookup(sample);
         Vec3 outgoing(0.0f);
         for (std::size_t light = 0; light < world.lrsms.size(); ++light) {
@@ -68,7 +68,7 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
         }
         result.radiance += (transmittance * alpha) * outgoing;
         transmittance *= 1.0f - alpha;
-        if (transmittance < settings.transmittanceCutoff) break;
+        if (transmittance < settings.march.transmittanceCutoff) break;
     }
     result.opacity = 1.0f - transmittance;
     return result;

@@ -22,8 +22,8 @@ namespace lrsm {
 inline constexpr float kTransmittanceMaxError = 4e-7f;
 inline float transmittanceOf(float opticalDepth, const ConeSettings& settings)
 {
-    if (settings.transmittance == TransmittanceModel::linear) return std::max(0.0f, 1.0f - opticalDepth);
-    return fastExp2(-1.4426950f * settings.densityK * opticalDepth);
+    if (settings.march.transmittance == TransmittanceModel::linear) return std::max(0.0f, 1.0f - opticalDepth);
+    return fastExp2(-1.4426950f * settings.march.densityK * opticalDepth);
 }
 
 /// F at distance t, by linear interpolation in the segments done so far (`last` is the current one).
@@ -35,20 +35,6 @@ inline float opticalDepthAt(const MarchSchedule& schedule, const std::vector<flo
     const float before = i > 0 ? opticalDepth[i - 1] : 0.0f;
     const float fraction = std::clamp((t - segment.begin) / (segment.end - segment.begin), 0.0f, 1.0f);
     return before + (opticalDepth[i] - before) * fraction;
-}
-
-/// Density that the receiver's own plane puts into a tap at p: its conservative voxelization is |n|_1 thick (1 voxel along the cone for directional
-/// chains), smeared by the tap's kernel.
-inline float ownPlaneDensity(const ConeWorld& world, const ConeRay& ray, const Vec3& offsetVoxels, float tapWidth)
-{
-    const Vec3 n = glm::abs(ray.receiverNormal);
-    const bool directional = world.opacity.axes == OpacityAxes::directional;
-    const float thickness = directional ? 1.0f : n.x + n.y + n.z;
-    const float area = directional ? glm::dot(glm::abs(ray.direction), n) : thickness;
-    const float fromPlane = glm::dot(offsetVoxels, ray.receiverNormal) + world.settings.normalOffsetVoxels;
-    const float variance = 0.25f * tapWidth * tapWidth + thickness * thickness / 12.0f;
-    const float gaussian = fastExp2(-0.72134752f * fromPlane * fromPlane / variance);  // exp(-x^2 / 2)
-    return area * 0.39894228f * gaussian / std::sqrt(variance);
 }
 
 /// Emission of one light's layers within one segment, weighted by the transmittance just before the emitter's own voxels.
@@ -64,7 +50,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
     if (!at.valid) return Vec3(0.0f);
 
     const MarchStep& step = schedule.steps[index];
-    const float voxelSize = world.opacity.base.frame.voxelSize;
+    const float voxelSize = world.opacity.base.grid.voxelSize;
     const float tap = step.tapWidth * voxelSize, segment = (step.end - step.begin) * voxelSize;
     const float range = lrsm.projection.depthRange(), zc = at.depth * range;  // metres beyond depthNear
     const float window = (0.5f * segment + 1.5f * tap) / range;
@@ -76,7 +62,8 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const LayerRange& bounds = lrsm.ranges[std::size_t(layer)];
         if (at.depth + window < bounds.depthMin || at.depth - window > bounds.depthMax) continue;
         if (!footprint) {
-            footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.rsmLevelBias, settings.rsmMinLevel), settings.filterFraction);
+            footprint = makeFootprint(lrsm, at.u, at.v, lrsmLevel(tap, at.texelSize, settings.gather.rsmLevelBias, settings.gather.rsmMinLevel),
+                                      settings.march.filterFraction);
             if (outsideMap(*footprint)) return Vec3(0.0f);
         }
         ++counts.lrsmSamples;
@@ -105,8 +92,8 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const float weight = world.phi((e0 + h) / sigma) - world.phi((e0 - h) / sigma);
 
         // The emitter's own voxels must not dim it: transmittance is taken in front of them.
-        const float slant = std::max(nDotV / glm::length(normal), settings.emitterSlantCap);
-        const float delay = (settings.emitterDelayTaps * step.tapWidth + settings.emitterDelayVoxels) / slant;
+        const float slant = std::max(nDotV / glm::length(normal), settings.gather.emitterSlantCap);
+        const float delay = (settings.gather.emitterDelayTaps * step.tapWidth + settings.gather.emitterDelayVoxels) / slant;
         const float transmittance = transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, index, step.middle - delay), settings);
         if (!(transmittance > 0.0f)) continue;
 
@@ -129,8 +116,8 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
                      ConeCounts& counts, Recorder& recorder)
 {
     const ConeSettings& settings = world.settings;
-    const VoxelFrame& frame = world.opacity.base.frame;
-    const float exit = gridExit(ray.originVoxels, ray.direction, frame.resolution);
+    const VoxelGrid& grid = world.opacity.base.grid;
+    const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
 
     ConeResult result;
     float depth = 0.0f;       // F at the current segment's end
@@ -149,17 +136,16 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
             const Vec3 tap = sampler(ray.originVoxels + offset, step.level);
             density = densityAlong(world.opacity, tap, ray.direction);
             occupied = tap.x + tap.y + tap.z > 0.0f;
-            if (settings.subtractOwnPlane && density > 0.0f) density = std::max(0.0f, density - ownPlaneDensity(world, ray, offset, step.tapWidth));
         }
         depth += density * (step.end - step.begin);
         scratch.opticalDepth[i] = depth;
 
-        const Vec3 pWorld = ray.originWorld + offset * frame.voxelSize;
+        const Vec3 pWorld = ray.originWorld + offset * grid.voxelSize;
         if constexpr (Recorder::active) recorder.step({&step, pWorld, density, density * (step.end - step.begin), transmittanceOf(depth, settings)});
 
         // Where neither this nor the last tap met a voxel there is no surface to emit.
         if (occupied || wasOccupied) {
-            if constexpr (RecordsLookups<Recorder>) recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * frame.voxelSize, -ray.direction});
+            if constexpr (RecordsLookups<Recorder>) recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * grid.voxelSize, -ray.direction});
             for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
                 result.radiance += slabEmission(world, light, ray, pWorld, schedule, i, scratch, counts, recorder);
         }
@@ -167,7 +153,7 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
 
         // Done when even the delayed transmittance is spent.
         const float settled = step.begin - 3.0f * step.tapWidth - 2.0f;
-        if (transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, i, settled), settings) < settings.transmittanceCutoff) break;
+        if (transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, i, settled), settings) < settings.march.transmittanceCutoff) break;
     }
     result.opacity = 1.0f - transmittanceOf(depth, settings);
     return result;

@@ -45,7 +45,7 @@ struct Aabb {
 /// Orthonormal frame about `normal` (unit): columns are tangent, bitangent, normal.
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017. The rule is part of the
 /// golden definition: the azimuth of every cone hangs on it.
-inline Mat3 frameFromNormal(const Vec3& normal)
+inline Mat3 basisFromNormal(const Vec3& normal)
 {
     const float sign = std::copysign(1.0f, normal.z);
     const float a = -1.0f / (sign + normal.z);

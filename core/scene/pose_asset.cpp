@@ -149,7 +149,7 @@ void storeTangents(lrsm::Mesh& mesh, const Vertices& vertices, const std::vector
         const float handedness = (source[i].w < 0.0f) != mirrored ? -1.0f : 1.0f;
         const DVec3 n = vertices.normals[i];
         DVec3 tangent = unitOrZero(vertices.tangents[i]);
-        if (tangent == DVec3(0.0)) tangent = DVec3(frameFromNormal(Vec3(n))[0]);
+        if (tangent == DVec3(0.0)) tangent = DVec3(basisFromNormal(Vec3(n))[0]);
         mesh.tangents.emplace_back(Vec3(tangent), handedness);
     }
 }

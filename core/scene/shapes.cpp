@@ -125,7 +125,7 @@ Light spotLight(const Vec3& position, const Vec3& target, const Vec3& intensity,
     light.type = LightType::spot;
     light.position = position;
     light.direction = glm::normalize(target - position);
-    light.up = frameFromNormal(light.direction)[1];
+    light.up = basisFromNormal(light.direction)[1];
     light.intensity = intensity;
     light.innerConeAngle = innerConeAngleRadians;
     light.outerConeAngle = outerConeAngleRadians;
@@ -137,7 +137,7 @@ Light directionalLight(const Vec3& directionWorld, const Vec3& irradiance)
     Light light;
     light.name = "sun";
     light.direction = glm::normalize(directionWorld);
-    light.up = frameFromNormal(light.direction)[1];
+    light.up = basisFromNormal(light.direction)[1];
     light.intensity = irradiance;
     return light;
 }

@@ -25,7 +25,7 @@ void addSphere(Mesh& mesh, const Vec3& centre, float radius, int subdivisions, b
 /// A diffuse material (metallic 0, roughness 1: no specular part).
 Material diffuseMaterial(const std::string& name, const Vec3& albedo, bool doubleSided = false);
 
-/// Lights and cameras from what a person would say; `up` is chosen by frameFromNormal (lights) or made orthogonal (cameras).
+/// Lights and cameras from what a person would say; `up` is chosen by basisFromNormal (lights) or made orthogonal (cameras).
 Light spotLight(const Vec3& position, const Vec3& target, const Vec3& intensity, float innerConeAngleRadians, float outerConeAngleRadians);
 Light directionalLight(const Vec3& directionWorld, const Vec3& irradiance);
 Camera lookAt(const Vec3& eye, const Vec3& target, const Vec3& up, float verticalFovRadians);

@@ -67,15 +67,19 @@ enum class Rotation { none, azimuth, strata };  ///< per-pixel over 4x4: none; a
 enum class SpecularAperture { fixed, roughness };
 enum class TransmittanceModel { exponential, linear };
 
-struct ConeSettings {
-    Estimator estimator = Estimator::slab;
+/// Which directions, and how many.
+struct ConeSetSettings {
     int count = 6;               ///< diffuse cones, 1..256
     float apertureScale = 0.5f;  ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
     bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
     int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
+    bool operator==(const ConeSetSettings&) const = default;
+};
 
-    // March.
+/// Where a cone samples, and what the voxels do to it.
+struct MarchSettings {
+    Estimator estimator = Estimator::slab;
     float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
     float startVoxels = 3.0f;           ///< first sample's distance along the cone, base voxels, >= 0
     float normalOffsetVoxels = 1.0f;    ///< origin off the surface along the geometric normal, base voxels, >= 0
@@ -83,18 +87,19 @@ struct ConeSettings {
     float push = 0.0f;                  ///< sphere centre moved along the receiver's normal, in sphere radii, >= 0
     float transmittanceCutoff = 0.01f;  ///< stop below this transmittance, [0, 1)
     int maxSteps = 1024;                ///< 1..100000
-
-    // Opacity.
     OpacityModel opacity = OpacityModel::density;
     float densityK = 2.0f;                                          ///< `paper`: optical depth of a one-voxel wall, > 0
     TransmittanceModel transmittance = TransmittanceModel::linear;  ///< `slab`
-    bool subtractOwnPlane = false;                                  ///< `slab`: receiver's own plane taken out of the opacity
     float voxelLevelBias = -2.0f;                                   ///< added to log2(diameter in voxels)
-    float emitterDelayTaps = 2.0f;                                  ///< `slab`: transmittance is taken this many tap widths before the emitter ...
-    float emitterDelayVoxels = 0.75f;                               ///< ... plus this many base voxels,
-    float emitterSlantCap = 0.5f;                                   ///< over max(cosine at the emitter, this)
+    FilterFraction filterFraction = FilterFraction::exact;          ///< of voxel and LRSM lookups
+    bool operator==(const MarchSettings&) const = default;
+};
 
-    // LRSM.
+/// How the light of what a cone meets is taken from the LRSMs.
+struct LrsmGatherSettings {
+    float emitterDelayTaps = 2.0f;     ///< `slab`: transmittance is taken this many tap widths before the emitter ...
+    float emitterDelayVoxels = 0.75f;  ///< ... plus this many base voxels,
+    float emitterSlantCap = 0.5f;      ///< over max(cosine at the emitter, this)
     LayerSelection layerSelection = LayerSelection::touched;
     Backface backface = Backface::step;  ///< `paper`: N of Eq. 8 as it is, or 1 where N > 0
     float vRadiusScale = 1.0f;           ///< `paper`: depth window of Eq. 12 is z_c +- this r_c, > 0
@@ -102,11 +107,21 @@ struct ConeSettings {
     float rsmMinLevel = 0.0f;            ///< clamp (Fig. 8's trade), >= 0
     GaussianMethod gaussian = GaussianMethod::polynomial;
     int gaussianTableSize = 1024;  ///< entries, 2..65536
-    FilterFraction filterFraction = FilterFraction::exact;
+    bool operator==(const LrsmGatherSettings&) const = default;
+};
 
-    // Specular.
-    SpecularAperture specularAperture = SpecularAperture::roughness;
-    float specularApertureDegrees = 10.0f;  ///< full aperture when fixed, (0, 170]
+struct SpecularSettings {
+    SpecularAperture aperture = SpecularAperture::roughness;
+    float apertureDegrees = 10.0f;  ///< full aperture when fixed, (0, 170]
+    bool operator==(const SpecularSettings&) const = default;
+};
+
+/// All of a cone, by what reads it: methods share the first two and the last.
+struct ConeSettings {
+    ConeSetSettings set;
+    MarchSettings march;
+    LrsmGatherSettings gather;
+    SpecularSettings specular;
     bool operator==(const ConeSettings&) const = default;
 };
 

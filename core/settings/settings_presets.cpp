@@ -16,22 +16,21 @@ Settings literal()
     s.layers = {.depthLayers = 2, .normalLayers = 2, .overlap = 0.1f, .fitRanges = false, .outermostDecay = true};
     s.direct.shadows = Shadows::cone;
     ConeSettings& c = s.cones;
-    c.estimator = Estimator::paper;
-    c.apertureScale = 1.0f;
-    c.startVoxels = 1.5f;
-    c.rotation = Rotation::none;
-    c.filter = false;
-    c.push = 0.0f;
-    c.opacity = OpacityModel::none;
-    c.transmittance = TransmittanceModel::exponential;
-    c.subtractOwnPlane = false;
-    c.voxelLevelBias = 0.0f;
-    c.layerSelection = LayerSelection::centre;
-    c.backface = Backface::cosine;
-    c.vRadiusScale = 1.0f;
-    c.gaussian = GaussianMethod::table;
-    c.specularAperture = SpecularAperture::fixed;
-    c.specularApertureDegrees = 10.0f;
+    c.march.estimator = Estimator::paper;
+    c.set.apertureScale = 1.0f;
+    c.march.startVoxels = 1.5f;
+    c.set.rotation = Rotation::none;
+    c.set.filter = false;
+    c.march.push = 0.0f;
+    c.march.opacity = OpacityModel::none;
+    c.march.transmittance = TransmittanceModel::exponential;
+    c.march.voxelLevelBias = 0.0f;
+    c.gather.layerSelection = LayerSelection::centre;
+    c.gather.backface = Backface::cosine;
+    c.gather.vRadiusScale = 1.0f;
+    c.gather.gaussian = GaussianMethod::table;
+    c.specular.aperture = SpecularAperture::fixed;
+    c.specular.apertureDegrees = 10.0f;
     return s;
 }
 
@@ -42,9 +41,9 @@ Settings fast()
     Settings s;
     s.voxel.resolution = 256;
     s.rsm.resolution = 512;
-    s.cones.count = 3;
-    s.cones.startVoxels = 2.0f;
-    s.cones.voxelLevelBias = -2.5f;
+    s.cones.set.count = 3;
+    s.cones.march.startVoxels = 2.0f;
+    s.cones.march.voxelLevelBias = -2.5f;
     return s;
 }
 
@@ -57,9 +56,9 @@ Settings balanced()
 Settings fine()
 {
     Settings s;
-    s.cones.count = 16;
-    s.cones.emitterDelayTaps = 2.5f;
-    s.cones.emitterSlantCap = 0.25f;
+    s.cones.set.count = 16;
+    s.cones.gather.emitterDelayTaps = 2.5f;
+    s.cones.gather.emitterSlantCap = 0.25f;
     return s;
 }
 
@@ -70,10 +69,10 @@ Settings accurate()
     s.voxel.resolution = 1024;
     s.rsm.resolution = 2048;
     s.layers.depthLayers = 3;
-    s.cones.count = 32;
-    s.cones.startVoxels = 4.0f;
-    s.cones.emitterDelayTaps = 3.5f;
-    s.cones.emitterSlantCap = 0.25f;
+    s.cones.set.count = 32;
+    s.cones.march.startVoxels = 4.0f;
+    s.cones.gather.emitterDelayTaps = 3.5f;
+    s.cones.gather.emitterSlantCap = 0.25f;
     return s;
 }
 

@@ -7,13 +7,62 @@ namespace lrsm {
 
 namespace {
 
-// One accessor pair a field, from the two member pointers that lead to it.
-template <auto Stage, auto Field>
+/// The struct of settings that a field is of.
+template <class Stage>
+auto& stageIn(auto& settings)
+{
+    if constexpr (std::is_same_v<Stage, VoxelSettings>)
+        return settings.voxel;
+    else if constexpr (std::is_same_v<Stage, RsmSettings>)
+        return settings.rsm;
+    else if constexpr (std::is_same_v<Stage, LayerSettings>)
+        return settings.layers;
+    else if constexpr (std::is_same_v<Stage, DirectSettings>)
+        return settings.direct;
+    else if constexpr (std::is_same_v<Stage, ConeSetSettings>)
+        return settings.cones.set;
+    else if constexpr (std::is_same_v<Stage, MarchSettings>)
+        return settings.cones.march;
+    else if constexpr (std::is_same_v<Stage, LrsmGatherSettings>)
+        return settings.cones.gather;
+    else if constexpr (std::is_same_v<Stage, SpecularSettings>)
+        return settings.cones.specular;
+    else
+        return settings.force;
+}
+
+template <class Stage>
+constexpr std::string_view stageName()
+{
+    if constexpr (std::is_same_v<Stage, VoxelSettings>)
+        return "voxel";
+    else if constexpr (std::is_same_v<Stage, RsmSettings>)
+        return "rsm";
+    else if constexpr (std::is_same_v<Stage, LayerSettings>)
+        return "layers";
+    else if constexpr (std::is_same_v<Stage, DirectSettings>)
+        return "direct";
+    else if constexpr (std::is_same_v<Stage, ForceSettings>)
+        return "force";
+    else
+        return "cones";
+}
+
+template <class Member>
+struct MemberOf;
+template <class Stage, class Value>
+struct MemberOf<Value Stage::*> {
+    using Struct = Stage;
+};
+
+// One accessor pair a field, from its member pointer.
+template <auto Field>
 struct Access {
-    static double get(const Settings& settings) { return static_cast<double>(settings.*Stage.*Field); }
+    using Stage = typename MemberOf<decltype(Field)>::Struct;
+    static double get(const Settings& settings) { return static_cast<double>(stageIn<Stage>(settings).*Field); }
     static void set(Settings& settings, double value)
     {
-        auto& field = settings.*Stage.*Field;
+        auto& field = stageIn<Stage>(settings).*Field;
         field = static_cast<std::remove_reference_t<decltype(field)>>(value);
     }
 };
@@ -22,52 +71,44 @@ struct Text {
     std::string_view key, unit, meaning, source;
 };
 
-template <auto Stage, auto Field>
-SettingRow row(std::string_view stage, const Text& text, SettingKind kind, SettingRange range, std::vector<std::string_view> choices = {})
-{
-    return {text.key, stage, text.unit, text.meaning, text.source, kind, range, std::move(choices), &Access<Stage, Field>::get, &Access<Stage, Field>::set};
-}
-
 template <auto Field>
-constexpr auto stageOf()
+SettingRow row(const Text& text, SettingKind kind, SettingRange range, std::vector<std::string_view> choices = {})
 {
-    if constexpr (requires(VoxelSettings s) { s.*Field; })
-        return std::pair(&Settings::voxel, std::string_view("voxel"));
-    else if constexpr (requires(RsmSettings s) { s.*Field; })
-        return std::pair(&Settings::rsm, std::string_view("rsm"));
-    else if constexpr (requires(LayerSettings s) { s.*Field; })
-        return std::pair(&Settings::layers, std::string_view("layers"));
-    else if constexpr (requires(DirectSettings s) { s.*Field; })
-        return std::pair(&Settings::direct, std::string_view("direct"));
-    else if constexpr (requires(ConeSettings s) { s.*Field; })
-        return std::pair(&Settings::cones, std::string_view("cones"));
-    else
-        return std::pair(&Settings::force, std::string_view("force"));
+    return {.key = text.key,
+            .stage = stageName<typename Access<Field>::Stage>(),
+            .unit = text.unit,
+            .meaning = text.meaning,
+            .source = text.source,
+            .kind = kind,
+            .range = range,
+            .choices = std::move(choices),
+            .get = &Access<Field>::get,
+            .set = &Access<Field>::set};
 }
 
 template <auto Field>
 SettingRow flag(const Text& text)
 {
-    return row<stageOf<Field>().first, Field>(stageOf<Field>().second, text, SettingKind::flag, {0, 1});
+    return row<Field>(text, SettingKind::flag, {0, 1});
 }
 
 template <auto Field>
 SettingRow choice(const Text& text, std::vector<std::string_view> names)
 {
     const float last = static_cast<float>(names.size() - 1);
-    return row<stageOf<Field>().first, Field>(stageOf<Field>().second, text, SettingKind::choice, {0, last}, std::move(names));
+    return row<Field>(text, SettingKind::choice, {0, last}, std::move(names));
 }
 
 template <auto Field>
 SettingRow whole(const Text& text, SettingRange range)
 {
-    return row<stageOf<Field>().first, Field>(stageOf<Field>().second, text, SettingKind::whole, range);
+    return row<Field>(text, SettingKind::whole, range);
 }
 
 template <auto Field>
 SettingRow real(const Text& text, SettingRange range)
 {
-    return row<stageOf<Field>().first, Field>(stageOf<Field>().second, text, SettingKind::real, range);
+    return row<Field>(text, SettingKind::real, range);
 }
 
 SettingRow shorthand(SettingRow row, void (*set)(Settings&, double))
@@ -95,7 +136,10 @@ using V = VoxelSettings;
 using R = RsmSettings;
 using L = LayerSettings;
 using D = DirectSettings;
-using C = ConeSettings;
+using Set = ConeSetSettings;
+using March = MarchSettings;
+using Gather = LrsmGatherSettings;
+using Specular = SpecularSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
@@ -154,56 +198,57 @@ void addBuildingRows(std::vector<SettingRow>& rows)
 
 void addConeRows(std::vector<SettingRow>& rows)
 {
-    rows.push_back(choice<&C::estimator>(
+    rows.push_back(choice<&March::estimator>(
         {"estimator", "", "Algorithm 1 and Eq. 1 as printed; or V and N as one term with linear transmittance", "paper: paper"}, {"paper", "slab"}));
-    rows.push_back(whole<&C::count>({"cone_count", "", "diffuse cones a pixel", "paper Sec. 6: 6"}, {1, 256}));
-    rows.push_back(real<&C::apertureScale>({"aperture_scale", "", "traced aperture over the cone's own (60 degrees for six)", "paper: 1"}, above(0, 2)));
+    rows.push_back(whole<&Set::count>({"cone_count", "", "diffuse cones a pixel", "paper Sec. 6: 6"}, {1, 256}));
+    rows.push_back(real<&Set::apertureScale>({"aperture_scale", "", "traced aperture over the cone's own (60 degrees for six)", "paper: 1"}, above(0, 2)));
     rows.push_back(
-        choice<&C::rotation>({"rotation", "", "per pixel over 4x4: none; azimuth of the cone set; azimuth and polar angle in strata", "ours; paper: none"},
-                             {"none", "azimuth", "strata"}));
-    rows.push_back(flag<&C::filter>({"irradiance_filter", "", "geometry-aware 4x4 filter of the irradiance, for rotation != none", "ours; paper: false"}));
-    rows.push_back(whole<&C::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
+        choice<&Set::rotation>({"rotation", "", "per pixel over 4x4: none; azimuth of the cone set; azimuth and polar angle in strata", "ours; paper: none"},
+                               {"none", "azimuth", "strata"}));
+    rows.push_back(flag<&Set::filter>({"irradiance_filter", "", "geometry-aware 4x4 filter of the irradiance, for rotation != none", "ours; paper: false"}));
+    rows.push_back(whole<&Set::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
-    rows.push_back(real<&C::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));
-    rows.push_back(real<&C::startVoxels>({"start_voxels", "base voxels", "distance of the first sample along the cone", "ours"}, {0, 1024}));
+    rows.push_back(real<&March::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));
+    rows.push_back(real<&March::startVoxels>({"start_voxels", "base voxels", "distance of the first sample along the cone", "ours"}, {0, 1024}));
     rows.push_back(
-        real<&C::normalOffsetVoxels>({"normal_offset_voxels", "base voxels", "origin off the surface, along the geometric normal", "ours"}, {0, 1024}));
-    rows.push_back(real<&C::minDiameterVoxels>({"min_diameter_voxels", "base voxels", "smallest sphere diameter", "ours"}, above(0, 1024)));
-    rows.push_back(real<&C::push>({"push", "sphere radii", "sphere centre moved along the receiver's normal", "ours; paper: 0"}, {0, 16}));
-    rows.push_back(real<&C::transmittanceCutoff>({"transmittance_cutoff", "", "a cone ends below this transmittance", "ours"}, below(0, 1)));
-    rows.push_back(whole<&C::maxSteps>({"max_steps", "", "steps a cone", "ours"}, {1, 100000}));
+        real<&March::normalOffsetVoxels>({"normal_offset_voxels", "base voxels", "origin off the surface, along the geometric normal", "ours"}, {0, 1024}));
+    rows.push_back(real<&March::minDiameterVoxels>({"min_diameter_voxels", "base voxels", "smallest sphere diameter", "ours"}, above(0, 1024)));
+    rows.push_back(real<&March::push>({"push", "sphere radii", "sphere centre moved along the receiver's normal", "ours; paper: 0"}, {0, 16}));
+    rows.push_back(real<&March::transmittanceCutoff>({"transmittance_cutoff", "", "a cone ends below this transmittance", "ours"}, below(0, 1)));
+    rows.push_back(whole<&March::maxSteps>({"max_steps", "", "steps a cone", "ours"}, {1, 100000}));
 
-    rows.push_back(choice<&C::opacity>({"opacity", "", "mip value as opacity, or as density along the step", "paper: none"}, {"none", "density"}));
-    rows.push_back(real<&C::densityK>({"density_k", "", "estimator paper: optical depth of a wall one voxel thick", "ours"}, above(0, 1000)));
-    rows.push_back(choice<&C::transmittance>({"transmittance", "", "estimator slab: coverage multiplies (exponential) or adds (linear)", "ours"},
-                                             {"exponential", "linear"}));
-    rows.push_back(flag<&C::subtractOwnPlane>({"subtract_own_plane", "", "estimator slab: the receiver's own plane is taken out of the opacity", "ours"}));
-    rows.push_back(real<&C::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"}, {-16, 16}));
-    rows.push_back(real<&C::emitterDelayTaps>(
+    rows.push_back(choice<&March::opacity>({"opacity", "", "mip value as opacity, or as density along the step", "paper: none"}, {"none", "density"}));
+    rows.push_back(real<&March::densityK>({"density_k", "", "estimator paper: optical depth of a wall one voxel thick", "ours"}, above(0, 1000)));
+    rows.push_back(choice<&March::transmittance>({"transmittance", "", "estimator slab: coverage multiplies (exponential) or adds (linear)", "ours"},
+                                                 {"exponential", "linear"}));
+    rows.push_back(real<&March::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"}, {-16, 16}));
+    rows.push_back(real<&Gather::emitterDelayTaps>(
         {"emitter_delay_taps", "tap widths", "estimator slab: transmittance is taken this far before the emitter", "ours"}, {0, 16}));
-    rows.push_back(real<&C::emitterDelayVoxels>({"emitter_delay_voxels", "base voxels", "... plus this", "ours"}, {0, 16}));
-    rows.push_back(real<&C::emitterSlantCap>({"emitter_slant_cap", "", "... over max(cosine at the emitter, this)", "ours"}, above(0, 1)));
+    rows.push_back(real<&Gather::emitterDelayVoxels>({"emitter_delay_voxels", "base voxels", "... plus this", "ours"}, {0, 16}));
+    rows.push_back(real<&Gather::emitterSlantCap>({"emitter_slant_cap", "", "... over max(cosine at the emitter, this)", "ours"}, above(0, 1)));
 }
 
 void addLookupRows(std::vector<SettingRow>& rows)
 {
-    rows.push_back(choice<&C::layerSelection>(
+    rows.push_back(choice<&Gather::layerSelection>(
         {"layer_selection", "", "layers that hold z_c, weighted by Eq. 15; or every layer touched, weight 1", "paper Sec. 4.3: centre"},
         {"centre", "touched"}));
-    rows.push_back(choice<&C::backface>({"backface", "", "estimator paper: N of Eq. 8, or 1 where N > 0", "paper Eq. 8: cosine"}, {"cosine", "step"}));
+    rows.push_back(choice<&Gather::backface>({"backface", "", "estimator paper: N of Eq. 8, or 1 where N > 0", "paper Eq. 8: cosine"}, {"cosine", "step"}));
     rows.push_back(
-        real<&C::vRadiusScale>({"v_radius_scale", "sphere radii", "estimator paper: depth window of Eq. 12 about z_c", "paper Eq. 12: 1"}, above(0, 16)));
-    rows.push_back(real<&C::rsmLevelBias>({"rsm_level_bias", "mip levels", "added to log2(diameter in LRSM texels)", "paper: 0"}, {-16, 16}));
-    rows.push_back(real<&C::rsmMinLevel>({"rsm_min_level", "mip levels", "finest LRSM level sampled: stability against sharpness", "paper Fig. 8"}, {0, 16}));
+        real<&Gather::vRadiusScale>({"v_radius_scale", "sphere radii", "estimator paper: depth window of Eq. 12 about z_c", "paper Eq. 12: 1"}, above(0, 16)));
+    rows.push_back(real<&Gather::rsmLevelBias>({"rsm_level_bias", "mip levels", "added to log2(diameter in LRSM texels)", "paper: 0"}, {-16, 16}));
     rows.push_back(
-        choice<&C::gaussian>({"gaussian", "", "normal distribution: table of gaussian_table_size, polynomial, or exact in double", "paper Sec. 5: table"},
-                             {"table", "polynomial", "exact"}));
-    rows.push_back(whole<&C::gaussianTableSize>({"gaussian_table_size", "entries", "over [-5, 5], linear between", "paper Sec. 5, no size given"}, {2, 65536}));
-    rows.push_back(choice<&C::filterFraction>(
+        real<&Gather::rsmMinLevel>({"rsm_min_level", "mip levels", "finest LRSM level sampled: stability against sharpness", "paper Fig. 8"}, {0, 16}));
+    rows.push_back(
+        choice<&Gather::gaussian>({"gaussian", "", "normal distribution: table of gaussian_table_size, polynomial, or exact in double", "paper Sec. 5: table"},
+                                  {"table", "polynomial", "exact"}));
+    rows.push_back(
+        whole<&Gather::gaussianTableSize>({"gaussian_table_size", "entries", "over [-5, 5], linear between", "paper Sec. 5, no size given"}, {2, 65536}));
+    rows.push_back(choice<&March::filterFraction>(
         {"filter_fraction", "", "sampler fractions in float, or rounded to 1/256 (all that D3D11 guarantees)", "D3D11.3 spec 7.18.16"}, {"exact", "8bit"}));
 
-    rows.push_back(choice<&C::specularAperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
-    rows.push_back(real<&C::specularApertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
+    rows.push_back(choice<&Specular::aperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
+    rows.push_back(real<&Specular::apertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
 
     rows.push_back(
         flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));

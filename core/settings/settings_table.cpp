@@ -157,11 +157,11 @@ void validate(const Settings& settings)
 
     const LayerSettings& layers = settings.layers;
     const ConeSettings& cones = settings.cones;
-    if (cones.layerSelection == LayerSelection::touched && layers.overlap != 0.0f)
+    if (cones.gather.layerSelection == LayerSelection::touched && layers.overlap != 0.0f)
         throw InputError("settings layer_selection=touched, layer_overlap=" + floatText(layers.overlap),
                          "every touched layer is summed, so overlapping layers would count light twice; set layer_overlap=0 or "
                          "layer_selection=centre");
-    if (cones.estimator == Estimator::slab && cones.layerSelection != LayerSelection::touched)
+    if (cones.march.estimator == Estimator::slab && cones.gather.layerSelection != LayerSelection::touched)
         throw InputError("settings estimator=slab, layer_selection=centre",
                          "the slab estimator sums a partition of the layers; set layer_selection=touched and layer_overlap=0, or "
                          "estimator=paper");

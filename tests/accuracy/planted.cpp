@@ -20,7 +20,7 @@ void dropLeastLayer(Lrsm& lrsm)
 Frame renderWithLoss(const Scene& scene, const Camera& camera, Settings settings, int width, int height, Loss loss)
 {
     // No step is shorter than this, counted as the delay is in widths of the tap: a sphere's diameter is a tap's width or more.
-    if (loss == Loss::transmittance) settings.cones.emitterDelayTaps -= settings.cones.step;
+    if (loss == Loss::transmittance) settings.cones.gather.emitterDelayTaps -= settings.cones.march.step;
 
     RenderOptions options{.width = width, .height = height, .watch = {.hashPasses = false, .progress = {}, .observe = {}}, .method = methodOf(settings.method)};
     options.method.gather = [&](const GatherInput& input, PassLog& log) {
@@ -28,7 +28,7 @@ Frame renderWithLoss(const Scene& scene, const Camera& camera, Settings settings
         if (loss == Loss::layer)
             for (Lrsm& lrsm : lrsms) dropLeastLayer(lrsm);
         Gathered gathered = traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings.cones);
-        gathered.filter4x4 = settings.cones.filter;
+        gathered.filter4x4 = settings.cones.set.filter;
         return gathered;
     };
     Frame frame = renderFrame(scene, camera, settings, options);

@@ -88,7 +88,7 @@ void algorithm1(benchmark::State& state)
     const Aabb bounds = makeBuiltinScene("atrium").value().bounds;
     const std::vector<ConeSample> samples = state.range(0) ? marchedSamples(bounds) : randomSamples(bounds, 32768);
     ConeSettings settings;
-    settings.layerSelection = state.range(1) ? LayerSelection::touched : LayerSelection::centre;
+    settings.gather.layerSelection = state.range(1) ? LayerSelection::touched : LayerSelection::centre;
     const NormalCdf phi;
     std::vector<LayerTerms> terms;
     for (const ConeSample& sample : samples) sampleLrsm(lrsm, sample, settings, phi, &terms);

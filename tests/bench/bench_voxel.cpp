@@ -53,9 +53,9 @@ void voxelizeScene(benchmark::State& state, const Scene& scene)
     const VoxelSettings settings = settingsOf(int(state.range(0)), Voxelization(state.range(1)));
     std::uint64_t voxels = 0;
     for (auto _ : state) {
-        const BitGrid grid = voxelize(scene, settings);
-        benchmark::DoNotOptimize(grid.bricks.data());
-        if (voxels == 0) voxels = grid.countOccupied();
+        const BitGrid bits = voxelize(scene, settings);
+        benchmark::DoNotOptimize(bits.bricks.data());
+        if (voxels == 0) voxels = bits.countOccupied();
     }
     state.SetItemsProcessed(state.iterations() * std::int64_t(scene.triangleCount()));
     state.counters["triangles"] = double(scene.triangleCount());
@@ -83,10 +83,10 @@ void BuildPyramid(benchmark::State& state)
 {
     const int n = int(state.range(0));
     const VoxelSettings settings = settingsOf(n, Voxelization::conservative, OpacityAxes(state.range(1)), Storage(state.range(2)));
-    const BitGrid grid = voxelize(atrium(), settings);
+    const BitGrid bits = voxelize(atrium(), settings);
     for (auto _ : state) {
         state.PauseTiming();
-        BitGrid base = grid;
+        BitGrid base = bits;
         state.ResumeTiming();
         const OpacityPyramid pyramid = buildPyramid(std::move(base), settings);
         benchmark::DoNotOptimize(pyramid.emptyLevels.data());
@@ -107,11 +107,11 @@ struct Tap {
 
 /// Six 60-degree cones for each pixel of 4x4 tiles near the atrium's surfaces, half a diameter a step, level bias -2: what the tracer does.
 /// `scattered` turns each cone its own way: nothing that one cone reads helps the next.
-std::vector<Tap> marchTaps(const BitGrid& grid, bool scattered)
+std::vector<Tap> marchTaps(const BitGrid& bits, bool scattered)
 {
     std::vector<Tap> taps;
     std::mt19937 random(1);
-    const float n = float(grid.frame.resolution);
+    const float n = float(bits.grid.resolution);
     const auto uniform = [&](float low, float high) { return low + (high - low) * float(random()) * 0x1p-32f; };
     const auto direction = [&] {
         const float x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
@@ -119,7 +119,7 @@ std::vector<Tap> marchTaps(const BitGrid& grid, bool scattered)
     };
     while (taps.size() < 200000) {
         const IVec3 cell(int(uniform(2, n - 2)), int(uniform(2, n - 2)), int(uniform(2, n - 2)));
-        if (!grid.occupied(cell.x, cell.y, cell.z)) continue;
+        if (!bits.occupied(cell.x, cell.y, cell.z)) continue;
         Vec3 axes[6];
         for (Vec3& axis : axes) axis = direction();
         for (int pixel = 0; pixel < 16; ++pixel) {

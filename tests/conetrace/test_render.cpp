@@ -23,7 +23,7 @@ Settings smallSettings(Estimator estimator = Estimator::slab)
     Settings s;
     s.voxel.resolution = 64;
     s.rsm.resolution = 128;
-    s.cones.estimator = estimator;
+    s.cones.march.estimator = estimator;
     return s;
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("pixel: the explanation names every cone and ends with the pixel's own
 {
     const auto scene = makeBuiltinScene("cornell-box");
     Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
-    settings.cones.filter = false;
+    settings.cones.set.filter = false;
     RenderOptions options;
     options.width = 48;
     options.height = 36;

@@ -34,7 +34,7 @@ Light randomLight(Random& random, LightType type, const Aabb& around)
     light.type = type;
     light.position = pointIn(random, around);
     light.direction = direction(random);
-    light.up = frameFromNormal(light.direction)[0];
+    light.up = basisFromNormal(light.direction)[0];
     light.outerConeAngle = between(random, 0.1f, 1.4f);
     return light;
 }

@@ -274,7 +274,7 @@ TEST_CASE("in a furnace of radiance L the specular cone sees L, at any aperture"
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < spokes; ++j) {
             const double cosine = (i + 0.5) / rings, sine = std::sqrt(1 - cosine * cosine), azimuth = 2 * 3.14159265358979 * (j + 0.5) / spokes;
-            const Vec3 direction = frameFromNormal(surface.normal) * Vec3(float(sine * std::cos(azimuth)), float(sine * std::sin(azimuth)), float(cosine));
+            const Vec3 direction = basisFromNormal(surface.normal) * Vec3(float(sine * std::cos(azimuth)), float(sine * std::sin(azimuth)), float(cosine));
             albedo += double(evaluateSpecular(surface, direction, toEye).g) * 2 * 3.14159265358979 / (rings * spokes);
         }
     const double error = std::sqrt(double(frame.indirectSpecularVariance.texels[0].g));

@@ -149,7 +149,6 @@ std::vector<std::string> coneDefines(const Frame& frame, int maxSteps, std::size
     when("layer_selection", "centre", "CENTRED");
     when("opacity", "density", "DENSITY");
     when("transmittance", "exponential", "EXPONENTIAL");
-    when("subtract_own_plane", "true", "OWN_PLANE");
     return defines;
 }
 

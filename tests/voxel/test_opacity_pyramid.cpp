@@ -62,27 +62,27 @@ TEST_CASE("pyramids do not depend on the number of threads", "[voxel][pyramid][d
     VoxelSettings settings;
     settings.resolution = 128;
     settings.axes = GENERATE(OpacityAxes::isotropic, OpacityAxes::directional);
-    const BitGrid grid = randomGrid(128, 0.01, 9);
+    const BitGrid bits = randomGrid(128, 0.01, 9);
     OpacityPyramid serial;
     {
         const ThreadLimit one(1);
-        serial = buildPyramid(grid, settings);
+        serial = buildPyramid(bits, settings);
     }
     const ThreadLimit eight(8);
-    const OpacityPyramid parallel = buildPyramid(grid, settings);
+    const OpacityPyramid parallel = buildPyramid(bits, settings);
     CHECK(serial.unorm8 == parallel.unorm8);
     CHECK(serial.emptyLevels == parallel.emptyLevels);
-    CHECK(grid.countOccupied() == parallel.base.countOccupied());
+    CHECK(bits.countOccupied() == parallel.base.countOccupied());
 }
 
 TEST_CASE("countOccupied counts every voxel once", "[voxel]")
 {
-    const BitGrid grid = randomGrid(64, 0.3, 4);
+    const BitGrid bits = randomGrid(64, 0.3, 4);
     std::uint64_t count = 0;
     for (int z = 0; z < 64; ++z)
         for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x) count += grid.occupied(x, y, z);
-    CHECK(grid.countOccupied() == count);
-    CHECK_FALSE(grid.occupied(-1, 0, 0));
-    CHECK_FALSE(grid.occupied(0, 64, 0));
+            for (int x = 0; x < 64; ++x) count += bits.occupied(x, y, z);
+    CHECK(bits.countOccupied() == count);
+    CHECK_FALSE(bits.occupied(-1, 0, 0));
+    CHECK_FALSE(bits.occupied(0, 64, 0));
 }

@@ -26,9 +26,9 @@ std::vector<Kind> allKinds()
     return kinds;
 }
 
-OpacityPyramid pyramidOf(const Kind& kind, BitGrid grid)
+OpacityPyramid pyramidOf(const Kind& kind, BitGrid bits)
 {
-    return lrsm::pyramidOf(std::move(grid), kind.axes, kind.storage);
+    return lrsm::pyramidOf(std::move(bits), kind.axes, kind.storage);
 }
 
 bool sameBits(const Vec3& a, const Vec3& b)

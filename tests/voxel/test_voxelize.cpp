@@ -66,16 +66,16 @@ std::vector<Case> awkwardTriangles(int n, unsigned seed, int count)
     return cases;
 }
 
-VoxelFrame unitFrame(int n)
+VoxelGrid unitFrame(int n)
 {
-    VoxelFrame frame;
-    frame.resolution = n;
-    return frame;
+    VoxelGrid grid;
+    grid.resolution = n;
+    return grid;
 }
 
-BitGrid voxelizeOne(const Triangle& t, const VoxelFrame& frame, Voxelization mode)
+BitGrid voxelizeOne(const Triangle& t, const VoxelGrid& grid, Voxelization mode)
 {
-    return voxelizeTriangles({t[0], t[1], t[2]}, frame, mode);
+    return voxelizeTriangles({t[0], t[1], t[2]}, grid, mode);
 }
 
 template <class Visit>
@@ -94,9 +94,9 @@ bool subset(const BitGrid& a, const BitGrid& b)
 }
 
 /// Which voxels of the grid, widened by one empty layer, are reached from its corner through `connectivity` neighbours.
-bool reaches(const BitGrid& grid, int connectivity, const IVec3& target)
+bool reaches(const BitGrid& bits, int connectivity, const IVec3& target)
 {
-    const int n = grid.frame.resolution + 2;
+    const int n = bits.grid.resolution + 2;
     std::vector<std::uint8_t> seen(std::size_t(n) * std::size_t(n) * std::size_t(n), 0);
     const auto index = [n](const IVec3& p) { return (std::size_t(p.z) * std::size_t(n) + std::size_t(p.y)) * std::size_t(n) + std::size_t(p.x); };
     std::vector<IVec3> open = {IVec3(0)};
@@ -110,7 +110,7 @@ bool reaches(const BitGrid& grid, int connectivity, const IVec3& target)
             if (steps == 0 || (connectivity == 6 && steps > 1)) continue;
             const IVec3 q = p + d;
             if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= n || q.y >= n || q.z >= n) continue;
-            if (seen[index(q)] || grid.occupied(q.x - 1, q.y - 1, q.z - 1)) continue;
+            if (seen[index(q)] || bits.occupied(q.x - 1, q.y - 1, q.z - 1)) continue;
             seen[index(q)] = 1;
             open.push_back(q);
         }
@@ -123,13 +123,13 @@ bool reaches(const BitGrid& grid, int connectivity, const IVec3& target)
 TEST_CASE("conservative sets exactly the voxels whose closed box the closed triangle overlaps", "[voxel][conservative]")
 {
     const int n = GENERATE(1, 2, 4, 16);
-    const VoxelFrame frame = unitFrame(n);
+    const VoxelGrid grid = unitFrame(n);
     for (const Case& c : awkwardTriangles(n, 7u + unsigned(n), n == 16 ? 25 : 60)) {
         for (const Triangle& t : c.triangles) {
-            const BitGrid grid = voxelizeOne(t, frame, Voxelization::conservative);
-            const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], frame), oracle::snapped(t[1], frame), oracle::snapped(t[2], frame)};
+            const BitGrid bits = voxelizeOne(t, grid, Voxelization::conservative);
+            const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], grid), oracle::snapped(t[1], grid), oracle::snapped(t[2], grid)};
             int wrong = 0;
-            forVoxels(n, [&](int x, int y, int z) { wrong += grid.occupied(x, y, z) != oracle::boxOverlap(exact, x, y, z); });
+            forVoxels(n, [&](int x, int y, int z) { wrong += bits.occupied(x, y, z) != oracle::boxOverlap(exact, x, y, z); });
             INFO(c.name << " in " << n << "^3");
             REQUIRE(wrong == 0);
         }
@@ -139,21 +139,21 @@ TEST_CASE("conservative sets exactly the voxels whose closed box the closed tria
 TEST_CASE("triangles as large as the scene are exact too, though their rows are shared out among threads", "[voxel][conservative]")
 {
     const int n = 256;
-    const VoxelFrame frame = unitFrame(n);
+    const VoxelGrid grid = unitFrame(n);
     std::mt19937 random(21);
     const Triangle triangles[] = {{Vec3(3.3f, 7.1f, 40.2f), Vec3(250.7f, 20.9f, 90.4f), Vec3(60.1f, 251.3f, 200.8f)},
                                   {Vec3(-4000, -4000, -3793.6f), Vec3(4000, -4000, 3406.4f), Vec3(0, 4000, 206.4f)},
                                   {Vec3(-4000, -3901, 3500), Vec3(4000, -2301, 3500), Vec3(0, 3549, -3500)}};
     for (const Triangle& t : triangles) {
-        const BitGrid grid = voxelizeOne(t, frame, Voxelization::conservative);
-        REQUIRE(grid.countOccupied() > 10000);
-        const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], frame), oracle::snapped(t[1], frame), oracle::snapped(t[2], frame)};
+        const BitGrid bits = voxelizeOne(t, grid, Voxelization::conservative);
+        REQUIRE(bits.countOccupied() > 10000);
+        const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], grid), oracle::snapped(t[1], grid), oracle::snapped(t[2], grid)};
         int wrong = 0;
         for (int i = 0; i < 150; ++i) {
             const int x = int(random() % 256u), y = int(random() % 256u);
             for (int z = 0; z < n; ++z) {
-                wrong += grid.occupied(x, y, z) != oracle::boxOverlap(exact, x, y, z);
-                wrong += grid.occupied(z, x, y) != oracle::boxOverlap(exact, z, x, y);
+                wrong += bits.occupied(x, y, z) != oracle::boxOverlap(exact, x, y, z);
+                wrong += bits.occupied(z, x, y) != oracle::boxOverlap(exact, z, x, y);
             }
         }
         CHECK(wrong == 0);
@@ -163,15 +163,15 @@ TEST_CASE("triangles as large as the scene are exact too, though their rows are 
 TEST_CASE("thin is a subset of conservative and holds every voxel whose crosshair the triangle meets", "[voxel][thin]")
 {
     const int n = GENERATE(4, 16);
-    const VoxelFrame frame = unitFrame(n);
+    const VoxelGrid grid = unitFrame(n);
     std::uint64_t thinVoxels = 0, conservativeVoxels = 0;
     for (const Case& c : awkwardTriangles(n, 70u + unsigned(n), 25)) {
         for (const Triangle& t : c.triangles) {
-            const BitGrid thin = voxelizeOne(t, frame, Voxelization::thin);
-            const BitGrid conservative = voxelizeOne(t, frame, Voxelization::conservative);
+            const BitGrid thin = voxelizeOne(t, grid, Voxelization::thin);
+            const BitGrid conservative = voxelizeOne(t, grid, Voxelization::conservative);
             INFO(c.name << " in " << n << "^3");
             REQUIRE(subset(thin, conservative));
-            const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], frame), oracle::snapped(t[1], frame), oracle::snapped(t[2], frame)};
+            const std::array<oracle::Point, 3> exact = {oracle::snapped(t[0], grid), oracle::snapped(t[1], grid), oracle::snapped(t[2], grid)};
             int missing = 0;
             forVoxels(n, [&](int x, int y, int z) { missing += oracle::crosshairHit(exact, x, y, z) && !thin.occupied(x, y, z); });
             REQUIRE(missing == 0);
@@ -185,15 +185,15 @@ TEST_CASE("thin is a subset of conservative and holds every voxel whose crosshai
 TEST_CASE("raster sets the one voxel at the plane's depth below each covered sample", "[voxel][raster]")
 {
     const int n = 16;
-    const VoxelFrame frame = unitFrame(n);
+    const VoxelGrid grid = unitFrame(n);
     for (const Case& c : awkwardTriangles(n, 99, 25)) {
         for (const Triangle& t : c.triangles) {
-            const BitGrid raster = voxelizeOne(t, frame, Voxelization::raster);
+            const BitGrid raster = voxelizeOne(t, grid, Voxelization::raster);
             INFO(c.name);
-            REQUIRE(subset(raster, voxelizeOne(t, frame, Voxelization::conservative)));
+            REQUIRE(subset(raster, voxelizeOne(t, grid, Voxelization::conservative)));
 
             // Each column along the dominant axis holds at most one voxel, and the sample at its centre hits the triangle there.
-            const std::array<oracle::Point, 3> v = {oracle::snapped(t[0], frame), oracle::snapped(t[1], frame), oracle::snapped(t[2], frame)};
+            const std::array<oracle::Point, 3> v = {oracle::snapped(t[0], grid), oracle::snapped(t[1], grid), oracle::snapped(t[2], grid)};
             const oracle::Point normal = oracle::cross(oracle::minus(v[1], v[0]), oracle::minus(v[2], v[0]));
             const auto size = [&](std::size_t axis) { return normal[axis] < 0 ? -normal[axis] : normal[axis]; };
             const std::size_t w = size(2) >= size(0) && size(2) >= size(1) ? 2 : size(1) >= size(0) ? 1 : 0;
@@ -237,11 +237,11 @@ TEST_CASE("raster's top-left rule covers a shared edge once and a fan's centre o
 {
     // The diagonal of the square runs through pixel centres. Sloped differently, the two halves' voxels lie in different layers, so that
     // a centre drawn twice would show as two voxels in a column.
-    const VoxelFrame frame = unitFrame(8);
+    const VoxelGrid grid = unitFrame(8);
     const Triangle lower = {Vec3(0, 0, 0.5f), Vec3(8, 0, 0.5f), Vec3(8, 8, 0.5f)};
     const Triangle upper = {Vec3(0, 0, 4.5f), Vec3(8, 8, 4.5f), Vec3(0, 8, 4.5f)};
-    const BitGrid a = voxelizeOne(lower, frame, Voxelization::raster);
-    const BitGrid b = voxelizeOne(upper, frame, Voxelization::raster);
+    const BitGrid a = voxelizeOne(lower, grid, Voxelization::raster);
+    const BitGrid b = voxelizeOne(upper, grid, Voxelization::raster);
     CHECK(a.countOccupied() + b.countOccupied() == 64);
     forVoxels(8, [&](int x, int y, int z) {
         if (z == 0) CHECK(a.occupied(x, y, 0) != b.occupied(x, y, 4));
@@ -250,10 +250,10 @@ TEST_CASE("raster's top-left rule covers a shared edge once and a fan's centre o
 
 TEST_CASE("raster has holes where conservative has none: that is why it exists", "[voxel][raster]")
 {
-    const VoxelFrame frame = unitFrame(8);
+    const VoxelGrid grid = unitFrame(8);
     const Triangle splinter = {Vec3(1.1f, 1.1f, 1.1f), Vec3(1.3f, 1.2f, 1.1f), Vec3(1.1f, 1.3f, 1.2f)};
-    CHECK(voxelizeOne(splinter, frame, Voxelization::raster).countOccupied() == 0);
-    CHECK(voxelizeOne(splinter, frame, Voxelization::conservative).countOccupied() == 1);
+    CHECK(voxelizeOne(splinter, grid, Voxelization::raster).countOccupied() == 0);
+    CHECK(voxelizeOne(splinter, grid, Voxelization::conservative).countOccupied() == 1);
 }
 
 TEST_CASE("closed meshes separate inside from outside: conservative for 26 neighbours, thin for 6", "[voxel][separation]")
@@ -291,8 +291,8 @@ TEST_CASE("closed meshes separate inside from outside: conservative for 26 neigh
 TEST_CASE("a wall on a voxel boundary belongs to both sides in conservative", "[voxel][conservative]")
 {
     const Triangle wall = {Vec3(-100, -100, 3), Vec3(100, -100, 3), Vec3(0, 200, 3)};
-    const BitGrid grid = voxelizeOne(wall, unitFrame(8), Voxelization::conservative);
-    forVoxels(8, [&](int x, int y, int z) { CHECK(grid.occupied(x, y, z) == (z == 2 || z == 3)); });
+    const BitGrid bits = voxelizeOne(wall, unitFrame(8), Voxelization::conservative);
+    forVoxels(8, [&](int x, int y, int z) { CHECK(bits.occupied(x, y, z) == (z == 2 || z == 3)); });
 }
 
 TEST_CASE("shifting the grid by whole voxels shifts the voxels; scaling the world by 2^k changes none", "[voxel][invariance]")
@@ -306,30 +306,30 @@ TEST_CASE("shifting the grid by whole voxels shifts the voxels; scaling the worl
         const float x = k(), y = k(), z = k();
         corners.emplace_back(x, y, z);
     }
-    const BitGrid grid = voxelizeTriangles(corners, unitFrame(n), mode);
+    const BitGrid bits = voxelizeTriangles(corners, unitFrame(n), mode);
 
     const IVec3 shift(3, -2, 5);
-    VoxelFrame shifted = unitFrame(n);
+    VoxelGrid shifted = unitFrame(n);
     shifted.origin = -Vec3(shift);
     const BitGrid moved = voxelizeTriangles(corners, shifted, mode);
     int different = 0;
     forVoxels(n, [&](int x, int y, int z) {
-        const bool was = grid.occupied(x - shift.x, y - shift.y, z - shift.z);
+        const bool was = bits.occupied(x - shift.x, y - shift.y, z - shift.z);
         different += moved.occupied(x, y, z) != was;
     });
     CHECK(different == 0);
 
     std::vector<Vec3> scaledCorners;
     for (const Vec3& p : corners) scaledCorners.push_back(0x1p-9f * p);
-    VoxelFrame scaled = unitFrame(n);
+    VoxelGrid scaled = unitFrame(n);
     scaled.voxelSize = 0x1p-9f;
-    CHECK(voxelizeTriangles(scaledCorners, scaled, mode).bricks == grid.bricks);
+    CHECK(voxelizeTriangles(scaledCorners, scaled, mode).bricks == bits.bricks);
 }
 
 TEST_CASE("doubling the resolution refines: each fine voxel lies in a set coarse one, each coarse one holds a fine one", "[voxel][invariance]")
 {
     const std::vector<Vec3> corners = oracle::sphereMesh(Vec3(0.1f, 0.2f, -0.1f), 0.7f, 20, 30);
-    VoxelFrame coarseFrame{Vec3(-1), 2.0f / 16, 16}, fineFrame{Vec3(-1), 2.0f / 32, 32};
+    VoxelGrid coarseFrame{Vec3(-1), 2.0f / 16, 16}, fineFrame{Vec3(-1), 2.0f / 32, 32};
     const BitGrid coarse = voxelizeTriangles(corners, coarseFrame, Voxelization::conservative);
     const BitGrid fine = voxelizeTriangles(corners, fineFrame, Voxelization::conservative);
     int wrong = 0;
@@ -344,41 +344,41 @@ TEST_CASE("doubling the resolution refines: each fine voxel lies in a set coarse
 TEST_CASE("triangle order and thread count change no bit", "[voxel][determinism]")
 {
     const auto mode = GENERATE(Voxelization::conservative, Voxelization::thin, Voxelization::raster);
-    const VoxelFrame frame = unitFrame(256);
+    const VoxelGrid grid = unitFrame(256);
     std::vector<Vec3> corners = oracle::sphereMesh(Vec3(128), 100.0f, 60, 80);
     for (const Case& c : awkwardTriangles(256, 5, 12))
         for (const Triangle& t : c.triangles) corners.insert(corners.end(), t.begin(), t.end());
     BitGrid serial;
     {
         const ThreadLimit one(1);
-        serial = voxelizeTriangles(corners, frame, mode);
+        serial = voxelizeTriangles(corners, grid, mode);
     }
     for (const int threads : {2, 8}) {
         const ThreadLimit limit(threads);
-        CHECK(voxelizeTriangles(corners, frame, mode).bricks == serial.bricks);
+        CHECK(voxelizeTriangles(corners, grid, mode).bricks == serial.bricks);
     }
     std::vector<Vec3> reversed(corners.rbegin(), corners.rend());  // other triangle order, other winding, other first vertex
-    CHECK(voxelizeTriangles(reversed, frame, mode).bricks == serial.bricks);
+    CHECK(voxelizeTriangles(reversed, grid, mode).bricks == serial.bricks);
 }
 
 TEST_CASE("triangles with a non-finite vertex are dropped; huge ones still cut the grid where they pass", "[voxel][robust]")
 {
-    const VoxelFrame frame = unitFrame(8);
+    const VoxelGrid grid = unitFrame(8);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float bad : {nan, kInfinity, -kInfinity})
         for (int axis = 0; axis < 3; ++axis) {
             Triangle t = {Vec3(1), Vec3(6, 1, 1), Vec3(1, 6, 1)};
             t[1][axis] = bad;
-            CHECK(voxelizeOne(t, frame, Voxelization::conservative).countOccupied() == 0);
+            CHECK(voxelizeOne(t, grid, Voxelization::conservative).countOccupied() == 0);
         }
 
     for (const float far : {5e3f, 1e9f, 1e20f, 3e38f}) {
         INFO("reach " << far);
         const Triangle floor = {Vec3(-far, 3.5f, -far), Vec3(far, 3.5f, -far), Vec3(0, 3.5f, far)};
         for (const auto mode : {Voxelization::conservative, Voxelization::thin, Voxelization::raster})
-            CHECK(voxelizeOne(floor, frame, mode).countOccupied() == 64);
+            CHECK(voxelizeOne(floor, grid, mode).countOccupied() == 64);
         const Triangle beside = {Vec3(-far, 9.5f, -far), Vec3(far, 9.5f, -far), Vec3(0, 9.5f, far)};
-        CHECK(voxelizeOne(beside, frame, Voxelization::conservative).countOccupied() == 0);
+        CHECK(voxelizeOne(beside, grid, Voxelization::conservative).countOccupied() == 0);
     }
 }
 
@@ -388,20 +388,20 @@ TEST_CASE("the frame is a cube about the scene with two voxels to spare on the l
     bounds.include(Vec3(-1.0f, 0.0f, 2.0f));
     bounds.include(Vec3(5.0f, 1.5f, 3.0f));
     for (const int resolution : {8, 64, 2048}) {
-        const VoxelFrame frame = fitVoxelFrame(bounds, resolution);
-        const Vec3 low = frame.voxelsFromWorld(bounds.min), high = frame.voxelsFromWorld(bounds.max);
+        const VoxelGrid grid = fitVoxelGrid(bounds, resolution);
+        const Vec3 low = grid.voxelsFromWorld(bounds.min), high = grid.voxelsFromWorld(bounds.max);
         CHECK(low.x == Approx(2.0f).margin(2e-3));
         CHECK(high.x == Approx(float(resolution - 2)).margin(2e-3));
         for (int axis = 0; axis < 3; ++axis) CHECK(low[axis] + high[axis] == Approx(float(resolution)).margin(4e-3));
     }
     for (const int resolution : {1, 2, 4}) {
-        const VoxelFrame frame = fitVoxelFrame(bounds, resolution);
-        CHECK(frame.voxelSize * float(resolution) == Approx(12.0f));  // half of the cube's edge is margin
+        const VoxelGrid grid = fitVoxelGrid(bounds, resolution);
+        CHECK(grid.voxelSize * float(resolution) == Approx(12.0f));  // half of the cube's edge is margin
     }
-    CHECK(fitVoxelFrame(Aabb{}, 16).voxelSize > 0.0f);
+    CHECK(fitVoxelGrid(Aabb{}, 16).voxelSize > 0.0f);
     Aabb point;
     point.include(Vec3(3));
-    CHECK(fitVoxelFrame(point, 16).voxelSize > 0.0f);
+    CHECK(fitVoxelGrid(point, 16).voxelSize > 0.0f);
 }
 
 TEST_CASE("frames that cannot be are refused", "[voxel][frame]")
@@ -409,18 +409,18 @@ TEST_CASE("frames that cannot be are refused", "[voxel][frame]")
     Aabb bounds;
     bounds.include(Vec3(0));
     bounds.include(Vec3(1));
-    for (const int resolution : {-1, 0, 3, 100, 4096}) CHECK_THROWS(fitVoxelFrame(bounds, resolution));
+    for (const int resolution : {-1, 0, 3, 100, 4096}) CHECK_THROWS(fitVoxelGrid(bounds, resolution));
     bounds.include(Vec3(kInfinity, 0, 0));
-    CHECK_THROWS(fitVoxelFrame(bounds, 16));
+    CHECK_THROWS(fitVoxelGrid(bounds, 16));
     Aabb wide;
     wide.include(Vec3(-3e38f));
     wide.include(Vec3(3e38f));
-    CHECK_NOTHROW(fitVoxelFrame(wide, 2048));
-    CHECK_THROWS(fitVoxelFrame(wide, 1));
+    CHECK_NOTHROW(fitVoxelGrid(wide, 2048));
+    CHECK_THROWS(fitVoxelGrid(wide, 1));
     Aabb tiny;
     tiny.include(Vec3(0));
     tiny.include(Vec3(1e-40f));
-    CHECK_THROWS(fitVoxelFrame(tiny, 16));
+    CHECK_THROWS(fitVoxelGrid(tiny, 16));
 }
 
 TEST_CASE("a scene's meshes all reach the grid", "[voxel]")
@@ -435,10 +435,10 @@ TEST_CASE("a scene's meshes all reach the grid", "[voxel]")
     }
     VoxelSettings settings;
     settings.resolution = 16;
-    const BitGrid grid = voxelize(scene, settings);
-    CHECK(grid.frame == fitVoxelFrame(scene.bounds, 16));
-    CHECK(grid.occupied(2, 3, 3));
-    CHECK(grid.occupied(13, 3, 3));
-    CHECK_FALSE(grid.occupied(7, 3, 3));
-    CHECK(grid.countOccupied() > 100);
+    const BitGrid bits = voxelize(scene, settings);
+    CHECK(bits.grid == fitVoxelGrid(scene.bounds, 16));
+    CHECK(bits.occupied(2, 3, 3));
+    CHECK(bits.occupied(13, 3, 3));
+    CHECK_FALSE(bits.occupied(7, 3, 3));
+    CHECK(bits.countOccupied() > 100);
 }

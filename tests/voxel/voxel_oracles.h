@@ -17,11 +17,11 @@ __extension__ using Int = __int128;
 using Point = std::array<Int, 3>;
 
 /// Nearest 1/4096 voxel, halves up; written with long double and independent of the product's code.
-inline Point snapped(const Vec3& pWorld, const lrsm::VoxelFrame& frame)
+inline Point snapped(const Vec3& pWorld, const lrsm::VoxelGrid& grid)
 {
     Point p;
     for (int axis = 0; axis < 3; ++axis) {
-        const long double voxels = ((long double)(pWorld[axis]) - (long double)(frame.origin[axis])) / (long double)(frame.voxelSize);
+        const long double voxels = ((long double)(pWorld[axis]) - (long double)(grid.origin[axis])) / (long double)(grid.voxelSize);
         p[std::size_t(axis)] = Int(std::floor(voxels * 4096.0L + 0.5L));
     }
     return p;

@@ -104,15 +104,15 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
 
     // The sampler's fractions, exact or in 1/256: each level rounds its own coordinates.
     double toTie = 1.0;
-    const double d = level(2.0 * double(cone.radius), p.texelSize, double(settings.rsmLevelBias), double(settings.rsmMinLevel));
-    const double lod = fractionOf(std::min(std::max(d, 0.0), double(lrsm.levels() - 1)), settings.filterFraction, toTie);
+    const double d = level(2.0 * double(cone.radius), p.texelSize, double(settings.gather.rsmLevelBias), double(settings.gather.rsmMinLevel));
+    const double lod = fractionOf(std::min(std::max(d, 0.0), double(lrsm.levels() - 1)), settings.march.filterFraction, toTie);
     const auto filtered = [&](int layer) {
-        if (settings.filterFraction == FilterFraction::exact) return sample(lrsm, layer, p.u, p.v, lod);
+        if (settings.march.filterFraction == FilterFraction::exact) return sample(lrsm, layer, p.u, p.v, lod);
         Filtered sum;
         for (int fine = static_cast<int>(lod); fine <= std::min(static_cast<int>(lod) + 1, lrsm.levels() - 1); ++fine) {
             const double n = lrsm.baseResolution >> fine, share = tent(lod - fine);
-            const double u = (fractionOf(p.u * n - 0.5, settings.filterFraction, toTie) + 0.5) / n,
-                         v = (fractionOf(p.v * n - 0.5, settings.filterFraction, toTie) + 0.5) / n;
+            const double u = (fractionOf(p.u * n - 0.5, settings.march.filterFraction, toTie) + 0.5) / n,
+                         v = (fractionOf(p.v * n - 0.5, settings.march.filterFraction, toTie) + 0.5) / n;
             const Filtered one = sample(lrsm, layer, u, v, fine);
             sum.radiance += share * one.radiance;
             sum.normal += share * one.normal;
@@ -125,11 +125,11 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
     };
 
     const double range = double(lrsm.projection.depthFar) - double(lrsm.projection.depthNear);
-    const double window = double(cone.radius) * double(settings.vRadiusScale) / range;
+    const double window = double(cone.radius) * double(settings.gather.vRadiusScale) / range;
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
         const LayerRange& bounds = lrsm.ranges[std::size_t(layer)];
         double f = 1.0;
-        if (settings.layerSelection == LayerSelection::touched) {
+        if (settings.gather.layerSelection == LayerSelection::touched) {
             const double gap = std::min(p.depth + window - double(bounds.depthMin), double(bounds.depthMax) - (p.depth - window));
             result.toJump = std::min(result.toJump, std::abs(gap));
             if (gap < 0.0) continue;
@@ -141,9 +141,9 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
         const Filtered t = filtered(layer);
         if (!(t.depthAlpha > 0.0 && t.normalAlpha > 0.0)) continue;
         double n = (t.normal.x * double(cone.toReceiver.x) + t.normal.y * double(cone.toReceiver.y) + t.normal.z * double(cone.toReceiver.z)) / t.normalAlpha;
-        if (settings.backface == Backface::step) result.toJump = std::min(result.toJump, std::abs(n));
+        if (settings.gather.backface == Backface::step) result.toJump = std::min(result.toJump, std::abs(n));
         if (!(n > 0.0)) continue;
-        if (settings.backface == Backface::step) n = 1.0;
+        if (settings.gather.backface == Backface::step) n = 1.0;
 
         const double mu = t.depth / t.depthAlpha, sigma2 = std::max(t.depthSquared / t.depthAlpha - mu * mu, varianceFloor);
         const double width = double(bounds.depthMax) - double(bounds.depthMin);

@@ -11,10 +11,10 @@ constexpr double kPiDouble = 3.14159265358979323846;
 void checkSix(CheckRun& run)
 {
     ConeSettings settings;
-    settings.estimator = Estimator::paper;
-    settings.count = 6;
-    settings.apertureScale = 1.0f;
-    settings.rotation = Rotation::none;
+    settings.march.estimator = Estimator::paper;
+    settings.set.count = 6;
+    settings.set.apertureScale = 1.0f;
+    settings.set.rotation = Rotation::none;
     const ConeSet set = makeConeSet(settings);
     const auto worst = exhaust(6, [&](std::uint64_t i) {
         if (set.rings.size() != 2 || set.directions.size() != 6 * kRotations) return 1.0;
@@ -40,17 +40,17 @@ void checkAll(CheckRun& run)
 {
     const auto worst = exhaust(256 * 2 * 3, [&](std::uint64_t i) {
         ConeSettings settings;
-        settings.count = 1 + static_cast<int>(i % 256);
-        settings.estimator = i / 256 % 2 ? Estimator::slab : Estimator::paper;
-        settings.rotation = static_cast<Rotation>(i / 512);
-        settings.apertureScale = 1.0f;
+        settings.set.count = 1 + static_cast<int>(i % 256);
+        settings.march.estimator = i / 256 % 2 ? Estimator::slab : Estimator::paper;
+        settings.set.rotation = static_cast<Rotation>(i / 512);
+        settings.set.apertureScale = 1.0f;
         const ConeSet set = makeConeSet(settings);
         double error = 0.0, total = 0.0, angle = 0.0, placed = 0.0;
         for (const ConeRing& ring : set.rings) {
             // Equal polar width (paper) or equal weight 1/count (slab).
             const double rings = double(set.rings.size()), h = kPiDouble / 2 / (2 * rings - 1), index = double(&ring - set.rings.data());
-            const bool slab = settings.estimator == Estimator::slab;
-            const double outer = slab           ? std::asin(std::sqrt(std::min(1.0, (placed + ring.count) / settings.count)))
+            const bool slab = settings.march.estimator == Estimator::slab;
+            const double outer = slab           ? std::asin(std::sqrt(std::min(1.0, (placed + ring.count) / settings.set.count)))
                                  : rings == 1.0 ? kPiDouble / 2
                                                 : (2 * index + 1) * h;
             const double a = std::sin(angle), b = std::sin(outer), weight = (b * b - a * a) / ring.count;
@@ -67,7 +67,7 @@ void checkAll(CheckRun& run)
             placed += ring.count;
             angle = outer;
         }
-        if (placed != settings.count) return 1.0;
+        if (placed != settings.set.count) return 1.0;
         return std::max(error, 0.1 * std::abs(total - 1.0));
     });
     run.add({.equation = "fig7",
@@ -83,19 +83,19 @@ void checkAll(CheckRun& run)
     // Strata: cosine-weighted and stratified, so 16 rotations together integrate a quadratic of the direction well.
     const auto strata = exhaust(64, [&](std::uint64_t i) {
         ConeSettings settings;
-        settings.count = 1 + static_cast<int>(i);
-        settings.estimator = Estimator::slab;
-        settings.rotation = Rotation::strata;
+        settings.set.count = 1 + static_cast<int>(i);
+        settings.march.estimator = Estimator::slab;
+        settings.set.rotation = Rotation::strata;
         const ConeSet set = makeConeSet(settings);
         double error = 0.0, square = 0.0;
         for (int r = 0; r < kRotations; ++r)
             for (const ConeRing& ring : set.rings)
                 for (int k = 0; k < ring.count; ++k) {
                     const glm::dvec3 d(set.rotation(r)[std::size_t(ring.first + k)]);
-                    square += d.z * d.z / (kRotations * settings.count);
+                    square += d.z * d.z / (kRotations * settings.set.count);
                     // The r-th point of the set lies at (r + 1/2) / 16 of its stratum's area, at the bit-reversed share of its azimuth.
                     const int reversed = ((r & 1) << 3) | ((r & 2) << 1) | ((r & 4) >> 1) | ((r & 8) >> 3);
-                    const double r2 = (ring.first + ring.count * (r + 0.5) / 16.0) / settings.count,
+                    const double r2 = (ring.first + ring.count * (r + 0.5) / 16.0) / settings.set.count,
                                  azimuth = 2.0 * kPiDouble * (k + (reversed + 0.5) / 16.0) / ring.count;
                     error = std::max({error, std::abs(d.x - std::sqrt(r2) * std::cos(azimuth)), std::abs(d.y - std::sqrt(r2) * std::sin(azimuth)),
                                       std::abs(d.x * d.x + d.y * d.y + d.z * d.z - 1.0)});
@@ -146,13 +146,13 @@ void checkSpecular(CheckRun& run)
         roughness, run.budget(20000),
         [](const auto& in) {
             ConeSettings settings;
-            settings.specularAperture = SpecularAperture::roughness;
+            settings.specular.aperture = SpecularAperture::roughness;
             const double alpha = double(in[0]) * double(in[0]), exact = std::min(std::tan(kPiDouble / 3), alpha < 1.0 ? std::tan(2.0 * std::atan(alpha)) : 1e9);
-            settings.specularAperture = SpecularAperture::roughness;
+            settings.specular.aperture = SpecularAperture::roughness;
             const double error = std::abs(double(specularTanHalf(settings, in[0])) - exact);
-            settings.specularAperture = SpecularAperture::fixed;
-            settings.specularApertureDegrees = 1.0f + 159.0f * in[0];
-            const double fixed = std::tan(double(settings.specularApertureDegrees) * kPiDouble / 360.0);
+            settings.specular.aperture = SpecularAperture::fixed;
+            settings.specular.apertureDegrees = 1.0f + 159.0f * in[0];
+            const double fixed = std::tan(double(settings.specular.apertureDegrees) * kPiDouble / 360.0);
             return std::max(error, std::abs(double(specularTanHalf(settings, 0.3f)) / fixed - 1.0));
         },
         821);

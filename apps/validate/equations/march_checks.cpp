@@ -57,25 +57,24 @@ std::vector<MarchCase> casesOf(Estimator estimator)
     for (int i = 0; i < 6; ++i) {
         MarchCase c;
         ConeSettings& s = c.cones;
-        s.estimator = estimator;
-        s.step = i % 2 ? 0.5f : 0.25f;
-        s.transmittanceCutoff = i == 2 ? 0.0f : 0.01f;
-        s.transmittance = i % 3 == 1 ? TransmittanceModel::exponential : TransmittanceModel::linear;
-        s.densityK = 1.5f;
+        s.march.estimator = estimator;
+        s.march.step = i % 2 ? 0.5f : 0.25f;
+        s.march.transmittanceCutoff = i == 2 ? 0.0f : 0.01f;
+        s.march.transmittance = i % 3 == 1 ? TransmittanceModel::exponential : TransmittanceModel::linear;
+        s.march.densityK = 1.5f;
         c.spot = i % 2 == 1;
         c.depthLayers = 1 + i % 3;
         c.axes = i % 3 == 2 ? OpacityAxes::isotropic : OpacityAxes::directional;
         if (estimator == Estimator::slab) {
-            s.subtractOwnPlane = i >= 4;
-            s.emitterDelayTaps = i == 3 ? 3.5f : 2.0f;
-            s.emitterSlantCap = i == 3 ? 0.25f : 0.5f;
+            s.gather.emitterDelayTaps = i == 3 ? 3.5f : 2.0f;
+            s.gather.emitterSlantCap = i == 3 ? 0.25f : 0.5f;
         } else {
-            s.opacity = i % 2 ? OpacityModel::density : OpacityModel::none;
-            s.voxelLevelBias = -1.0f;
-            s.push = i == 4 ? 0.75f : 0.0f;
-            s.backface = Backface::cosine;
-            s.layerSelection = LayerSelection::touched;
-            s.minDiameterVoxels = 2.0f;
+            s.march.opacity = i % 2 ? OpacityModel::density : OpacityModel::none;
+            s.march.voxelLevelBias = -1.0f;
+            s.march.push = i == 4 ? 0.75f : 0.0f;
+            s.gather.backface = Backface::cosine;
+            s.gather.layerSelection = LayerSelection::touched;
+            s.march.minDiameterVoxels = 2.0f;
         }
         cases.push_back(c);
     }
@@ -92,7 +91,7 @@ struct MarchWorld {
 
     explicit MarchWorld(const MarchCase& c) : settings(c.cones)
     {
-        opacity.base.frame = {Vec3(-0.5f * kVoxelSize * kResolution), kVoxelSize, kResolution};
+        opacity.base.grid = {Vec3(-0.5f * kVoxelSize * kResolution), kVoxelSize, kResolution};
         opacity.axes = c.axes;
         LayerSettings layers = layersOf(c.depthLayers, 1);
         layers.fitRanges = c.fitRanges;
@@ -176,14 +175,14 @@ void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>
 void checkStepOpacity(CheckRun& run)
 {
     ConeSettings settings;
-    settings.opacity = OpacityModel::density;
+    settings.march.opacity = OpacityModel::density;
     const SearchSpace<float, 3> space{{{{1e-6f, 1.5f, Spacing::logarithmic}, {0.01f, 64.0f, Spacing::logarithmic}, {0.25f, 4.0f}}},
                                       {{1.0f, 1.0f, 2.0f}, {0.5f, 1.0f, 1.0f}, {0.99999994f, 0.1f, 1.0f}}};
     const auto worst = findWorst(
         space, run.budget(150000),
         [&](const auto& in) {
             ConeSettings s = settings;
-            s.densityK = in[2];
+            s.march.densityK = in[2];
             const double error = std::abs(double(stepOpacity(in[0], in[1], s)) - twin::stepOpacity(double(in[0]), double(in[1]), s));
             return error / std::max(1.0, double(in[1]) * double(in[2]) / 16.0);  // 1 - a has been rounded to float
         },
@@ -198,20 +197,20 @@ void checkStepOpacity(CheckRun& run)
          .bound = double(kStepOpacityMaxError),
          .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return stepOpacity(float(i) / 8192.0f, 0.5f, settings); }) : 0.0},
         worst, inputText<float, 3>({"a", "length", "k"}, worst.input));
-    settings.opacity = OpacityModel::none;
+    settings.march.opacity = OpacityModel::none;
     const auto plain =
         exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
     run.add(exactCheck("1", "stepOpacity, opacity = none", "min(a, 1)", "a 0 .. 1.5"), plain, "i = " + exactText(plain.input[0]));
 
     ConeSettings exponential;
-    exponential.transmittance = TransmittanceModel::exponential;
+    exponential.march.transmittance = TransmittanceModel::exponential;
     const SearchSpace<float, 2> depths{{{{0.0f, 20.0f}, {0.25f, 4.0f}}}, {{0.0f, 1.0f}, {1.0f, 1.0f}}};
     const auto lost = findWorst(
         depths, run.budget(100000),
         [&](const auto& in) {
             ConeSettings s = exponential, linear = exponential;
-            s.densityK = in[1];
-            linear.transmittance = TransmittanceModel::linear;
+            s.march.densityK = in[1];
+            linear.march.transmittance = TransmittanceModel::linear;
             return std::max(std::abs(double(transmittanceOf(in[0], s)) - twin::transmittance(double(in[0]), s)),
                             std::abs(double(transmittanceOf(in[0], linear)) - twin::transmittance(double(in[0]), linear)));
         },
@@ -236,10 +235,10 @@ void checkSchedule(CheckRun& run)
                                           {{0.57735026f, 0.5f, 0.0f, 1.0f}}};
         const auto settingsOf = [slab](const std::array<float, 4>& in) {
             ConeSettings s;
-            s.estimator = slab ? Estimator::slab : Estimator::paper;
-            s.step = in[1], s.voxelLevelBias = in[2], s.startVoxels = in[3];
-            s.minDiameterVoxels = 1.0f;
-            s.maxSteps = 100000;
+            s.march.estimator = slab ? Estimator::slab : Estimator::paper;
+            s.march.step = in[1], s.march.voxelLevelBias = in[2], s.march.startVoxels = in[3];
+            s.march.minDiameterVoxels = 1.0f;
+            s.march.maxSteps = 100000;
             return s;
         };
         const auto level = findWorst(

@@ -54,30 +54,19 @@ double opticalDepth(const std::vector<Segment>& segments, const std::vector<doub
     return before;
 }
 
-/// The receiver's own plane, |n|_1 voxels thick (one along the cone for directional chains), smeared by a tent of the tap's width and its own box.
-double ownPlane(const ConeWorld& world, const ConeRay& ray, const DVec3& offset, double width)
-{
-    const DVec3 n(ray.receiverNormal), d(ray.direction);
-    const bool directional = world.opacity.axes == OpacityAxes::directional;
-    const double thickness = directional ? 1.0 : std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    const double area = directional ? std::abs(d.x * n.x) + std::abs(d.y * n.y) + std::abs(d.z * n.z) : thickness;
-    const double distance = dotOf(offset, n) + double(world.settings.normalOffsetVoxels), variance = width * width / 4.0 + thickness * thickness / 12.0;
-    return area * std::exp(-distance * distance / (2.0 * variance)) / std::sqrt(2.0 * 3.14159265358979323846 * variance);
-}
-
 /// What one light's layers emit within a segment.
 DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, const DVec3& pWorld, const std::vector<Segment>& segments,
                const std::vector<double>& depths, double& toJump)
 {
     const ConeSettings& settings = world.settings;
     const Segment& s = segments[depths.size() - 1];
-    const double voxel = double(world.opacity.base.frame.voxelSize), tap = s.width * voxel, step = (s.end - s.begin) * voxel;
+    const double voxel = double(world.opacity.base.grid.voxelSize), tap = s.width * voxel, step = (s.end - s.begin) * voxel;
     const Projected p = project(lrsm.projection, pWorld);
     if (!p.valid) return DVec3(0.0);
     const double range = double(lrsm.projection.depthFar) - double(lrsm.projection.depthNear), reach = (0.5 * step + 1.5 * tap) / range;
     DVec3 toLight = -DVec3(lrsm.projection.forward);
     if (lrsm.projection.type != LightType::directional) toLight = (DVec3(lrsm.projection.position) - pWorld) / length(DVec3(lrsm.projection.position) - pWorld);
-    const double lod = level(tap, p.texelSize, double(settings.rsmLevelBias), double(settings.rsmMinLevel));
+    const double lod = level(tap, p.texelSize, double(settings.gather.rsmLevelBias), double(settings.gather.rsmMinLevel));
 
     DVec3 sum(0.0);
     for (int layer = 0; layer < lrsm.layers(); ++layer) {
@@ -99,8 +88,8 @@ DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, con
         const double ahead = p.depth * range - (double(bounds.depthMin) * range + mean * width), half = 0.5 * rate * step;
         const double w = phi((ahead + half) / sigma) - phi((ahead - half) / sigma);
 
-        const double slant = std::max(facing / length(n), double(settings.emitterSlantCap));
-        const double delay = (double(settings.emitterDelayTaps) * s.width + double(settings.emitterDelayVoxels)) / slant;
+        const double slant = std::max(facing / length(n), double(settings.gather.emitterSlantCap));
+        const double delay = (double(settings.gather.emitterDelayTaps) * s.width + double(settings.gather.emitterDelayVoxels)) / slant;
         sum += transmittance(opticalDepth(segments, depths, s.middle - delay), settings) * w * t.radiance;
     }
     return sum;
@@ -117,39 +106,39 @@ DVec3 OpacityField::operator()(const DVec3& p, double level) const
 double stepOpacity(double density, double stepLength, const ConeSettings& settings)
 {
     const double a = std::min(std::max(density, 0.0), 1.0);
-    if (settings.opacity == OpacityModel::none) return a;
-    return 1.0 - std::pow(1.0 - a, double(settings.densityK) * stepLength);
+    if (settings.march.opacity == OpacityModel::none) return a;
+    return 1.0 - std::pow(1.0 - a, double(settings.march.densityK) * stepLength);
 }
 
 double transmittance(double depth, const ConeSettings& settings)
 {
-    if (settings.transmittance == TransmittanceModel::linear) return std::max(0.0, 1.0 - depth);
-    return std::exp(-double(settings.densityK) * depth);
+    if (settings.march.transmittance == TransmittanceModel::linear) return std::max(0.0, 1.0 - depth);
+    return std::exp(-double(settings.march.densityK) * depth);
 }
 
 March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRay& ray, const MarchSchedule& schedule)
 {
     const ConeSettings& settings = world.settings;
-    const double voxel = double(world.opacity.base.frame.voxelSize), exit = exitOf(ray, world.opacity.base.frame.resolution);
+    const double voxel = double(world.opacity.base.grid.voxelSize), exit = exitOf(ray, world.opacity.base.grid.resolution);
     March result;
     double clear = 1.0;
     for (const MarchStep& step : schedule.steps) {
         const double t = double(step.middle), diameter = double(step.diameter);
         result.toJump = std::min(result.toJump, std::abs(t - diameter - exit));
         if (t - diameter > exit) break;
-        const DVec3 offset = DVec3(ray.direction) * t + DVec3(ray.receiverNormal) * (double(settings.push) * 0.5 * diameter);
+        const DVec3 offset = DVec3(ray.direction) * t + DVec3(ray.receiverNormal) * (double(settings.march.push) * 0.5 * diameter);
         const DVec3 sampled = field(DVec3(ray.originVoxels) + offset, double(step.level));
         const double alpha = stepOpacity(densityOf(world, sampled, DVec3(ray.direction)), double(step.end) - double(step.begin), settings);
         const DVec3 pWorld = DVec3(ray.originWorld) + offset * voxel;
-        const DVec3 back = DVec3(ray.originWorld) - pWorld, toReceiver = settings.push == 0.0f ? -DVec3(ray.direction) : back / length(back);
+        const DVec3 back = DVec3(ray.originWorld) - pWorld, toReceiver = settings.march.push == 0.0f ? -DVec3(ray.direction) : back / length(back);
         for (const Lrsm& lrsm : world.lrsms) {
             const Outgoing out = algorithm1(lrsm, project(lrsm.projection, pWorld), {Vec3(pWorld), float(0.5 * diameter * voxel), Vec3(toReceiver)}, settings);
             result.toJump = std::min(result.toJump, out.toJump);
             result.radiance += clear * alpha * out.radiance;
         }
         clear *= 1.0 - alpha;
-        result.toJump = std::min(result.toJump, std::abs(clear - double(settings.transmittanceCutoff)));
-        if (clear < double(settings.transmittanceCutoff)) break;
+        result.toJump = std::min(result.toJump, std::abs(clear - double(settings.march.transmittanceCutoff)));
+        if (clear < double(settings.march.transmittanceCutoff)) break;
     }
     result.opacity = 1.0 - clear;
     return result;
@@ -158,7 +147,7 @@ March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRa
 March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay& ray, const MarchSchedule& schedule)
 {
     const ConeSettings& settings = world.settings;
-    const double voxel = double(world.opacity.base.frame.voxelSize), exit = exitOf(ray, world.opacity.base.frame.resolution);
+    const double voxel = double(world.opacity.base.grid.voxelSize), exit = exitOf(ray, world.opacity.base.grid.resolution);
     March result;
     std::vector<Segment> segments;
     std::vector<double> depths;
@@ -171,9 +160,8 @@ March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay
 
         const DVec3 offset = DVec3(ray.direction) * s.middle;
         double density = 0.0;
-        if (step.begin > 0.0f || settings.startVoxels == 0.0f) {  // the first segment lies in the receiver's own voxels
+        if (step.begin > 0.0f || settings.march.startVoxels == 0.0f) {  // the first segment lies in the receiver's own voxels
             density = densityOf(world, field(DVec3(ray.originVoxels) + offset, double(step.level)), DVec3(ray.direction));
-            if (settings.subtractOwnPlane) density = std::max(0.0, density - ownPlane(world, ray, offset, s.width));
         }
         depth += density * (s.end - s.begin);
         depths.push_back(depth);
@@ -181,8 +169,8 @@ March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay
             result.radiance += emission(world, lrsm, ray, DVec3(ray.originWorld) + offset * voxel, segments, depths, result.toJump);
 
         const double left = transmittance(opticalDepth(segments, depths, s.begin - 3.0 * s.width - 2.0), settings);
-        result.toJump = std::min(result.toJump, std::abs(left - double(settings.transmittanceCutoff)));
-        if (left < double(settings.transmittanceCutoff)) break;
+        result.toJump = std::min(result.toJump, std::abs(left - double(settings.march.transmittanceCutoff)));
+        if (left < double(settings.march.transmittanceCutoff)) break;
     }
     result.opacity = 1.0 - transmittance(depth, settings);
     return result;

@@ -118,14 +118,14 @@ std::vector<Choice> choicesOf(LayerSelection selection)
     constexpr GaussianMethod kMethods[3] = {GaussianMethod::table, GaussianMethod::polynomial, GaussianMethod::exact};
     for (int i = 0; i < 6; ++i) {
         Choice c{1 + i % 3, 1 + i % 2, i % 2 == 1, i % 3 ? Storage::gpu : Storage::float32, {}};
-        c.cones.layerSelection = selection;
-        c.cones.backface = i < 3 ? Backface::cosine : Backface::step;
-        c.cones.gaussian = kMethods[(i / 2) % 3];
-        c.cones.gaussianTableSize = 4096;
-        c.cones.vRadiusScale = i % 2 ? 1.5f : 1.0f;
-        c.cones.rsmLevelBias = i == 2 ? -0.5f : 0.0f;
-        c.cones.rsmMinLevel = i == 3 ? 1.25f : 0.0f;
-        c.cones.filterFraction = i == 4 ? FilterFraction::fixed8 : FilterFraction::exact;
+        c.cones.gather.layerSelection = selection;
+        c.cones.gather.backface = i < 3 ? Backface::cosine : Backface::step;
+        c.cones.gather.gaussian = kMethods[(i / 2) % 3];
+        c.cones.gather.gaussianTableSize = 4096;
+        c.cones.gather.vRadiusScale = i % 2 ? 1.5f : 1.0f;
+        c.cones.gather.rsmLevelBias = i == 2 ? -0.5f : 0.0f;
+        c.cones.gather.rsmMinLevel = i == 3 ? 1.25f : 0.0f;
+        c.cones.march.filterFraction = i == 4 ? FilterFraction::fixed8 : FilterFraction::exact;
         choices.push_back(c);
     }
     return choices;
@@ -141,7 +141,7 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
         Rsm rsm = syntheticRsm(64, 420);
         rsm.projection = choice.spot ? spotOverCube(64) : sunOverCube(64);
         const Lrsm lrsm = buildLrsm(rsm, layers);
-        const NormalCdf phi(choice.cones.gaussian, choice.cones.gaussianTableSize);
+        const NormalCdf phi(choice.cones.gather.gaussian, choice.cones.gather.gaussianTableSize);
         const auto coneOf = [](const std::array<float, 6>& in) {
             const float sine = std::sqrt(std::max(0.0f, 1.0f - in[4] * in[4]));
             return ConeSample{Vec3(in[0], in[1], in[2]), in[3], Vec3(sine * std::cos(in[5]), sine * std::sin(in[5]), in[4])};
@@ -182,7 +182,7 @@ void checkProduct(CheckRun& run)
 {
     const Lrsm lrsm = buildLrsm(flatMap(sunOverCube(32), {.radiance = Vec3(2.0f, 1.0f, 0.5f), .normal = Vec3(0.0f, 1.0f, 0.0f)}), oneLayer());
     ConeSettings cones;
-    cones.backface = Backface::cosine;
+    cones.gather.backface = Backface::cosine;
     const NormalCdf phi;
     // Depth 1/2 of a range of 4 m from y = 2: the wall is y = 0.
     const SearchSpace<float, 3> space{{{{-0.3f, 0.3f}, {0.01f, 0.4f, Spacing::logarithmic}, {-1.0f, 1.0f}}},

@@ -10,15 +10,15 @@ namespace lrsm {
 template <class Occupied>
 BitGrid gridOf(int n, Occupied&& occupied)
 {
-    BitGrid grid;
-    grid.frame.resolution = n;
+    BitGrid bits;
+    bits.grid.resolution = n;
     const auto edge = std::size_t(BitGrid::bricksPerEdge(n));
-    grid.bricks.assign(edge * edge * edge, 0);
+    bits.bricks.assign(edge * edge * edge, 0);
     for (int z = 0; z < n; ++z)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x)
-                if (occupied(x, y, z)) grid.bricks[grid.brickIndex(x, y, z)] |= std::uint64_t(1) << BitGrid::bitIndex(x, y, z);
-    return grid;
+                if (occupied(x, y, z)) bits.bricks[bits.brickIndex(x, y, z)] |= std::uint64_t(1) << BitGrid::bitIndex(x, y, z);
+    return bits;
 }
 
 inline BitGrid randomGrid(int n, double density, std::uint32_t stream)
@@ -27,14 +27,14 @@ inline BitGrid randomGrid(int n, double density, std::uint32_t stream)
     return gridOf(n, [&](int, int, int) { return random.unit() < density; });
 }
 
-inline OpacityPyramid pyramidOf(BitGrid grid, OpacityAxes axes = OpacityAxes::directional, Storage storage = Storage::gpu, MipFilter filter = MipFilter::mean)
+inline OpacityPyramid pyramidOf(BitGrid bits, OpacityAxes axes = OpacityAxes::directional, Storage storage = Storage::gpu, MipFilter filter = MipFilter::mean)
 {
     VoxelSettings settings;
-    settings.resolution = grid.frame.resolution;
+    settings.resolution = bits.grid.resolution;
     settings.axes = axes;
     settings.storage = storage;
     settings.mipFilter = filter;
-    return buildPyramid(std::move(grid), settings);
+    return buildPyramid(std::move(bits), settings);
 }
 
 }  // namespace lrsm

@@ -40,7 +40,7 @@ void addStorageTrades(CheckRun& run)
                                       {"half_rounding", "d3d", Storage::gpu, HalfRounding::d3d},
                                       {"half_rounding", "nearest_even", Storage::gpu, HalfRounding::nearestEven}};
     ConeSettings cones;
-    cones.backface = Backface::cosine;
+    cones.gather.backface = Backface::cosine;
     const NormalCdf phi;
     LayerSettings layers = layersOf(2, 2);
     const Lrsm exact = buildLrsm(rsm, layers);

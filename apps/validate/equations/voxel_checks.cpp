@@ -14,7 +14,7 @@ double stored(double exact, Storage storage)
 }
 
 /// Share of the (2^level)^2 columns along `axis` of a block that hold any occupied voxel.
-double columnShare(const BitGrid& grid, int level, int axis, const IVec3& block)
+double columnShare(const BitGrid& bits, int level, int axis, const IVec3& block)
 {
     const int n = 1 << level;
     int hit = 0;
@@ -25,7 +25,7 @@ double columnShare(const BitGrid& grid, int level, int axis, const IVec3& block)
             p[axis] += k;
             p[(axis + 1) % 3] += i % n;
             p[(axis + 2) % 3] += i / n;
-            any = grid.occupied(p.x, p.y, p.z);
+            any = bits.occupied(p.x, p.y, p.z);
         }
         hit += any ? 1 : 0;
     }

@@ -73,14 +73,14 @@ void gridOf(Mode mode, Probe& probe, int resolution)
 /// An axis-parallel plane through the middle of the largest grids: exactly one layer of voxels.
 void largeGrid(Probe& probe, int resolution)
 {
-    VoxelFrame frame;
-    frame.resolution = resolution;
+    VoxelGrid grid;
+    grid.resolution = resolution;
     const auto n = static_cast<float>(resolution);
     const float y = 0.5f * n + 0.25f;
-    const BitGrid grid = voxelizeTriangles(
-        {Vec3(-1, y, -1), Vec3(-1, y, n + 1), Vec3(n + 1, y, n + 1), Vec3(-1, y, -1), Vec3(n + 1, y, n + 1), Vec3(n + 1, y, -1)}, frame, Voxelization::thin);
-    probe.note(static_cast<double>(grid.countOccupied()));
-    probe.bound("voxels set over n^2, - 1", static_cast<double>(grid.countOccupied()) / (double(n) * double(n)) - 1.0, 0.0);
+    const BitGrid bits = voxelizeTriangles(
+        {Vec3(-1, y, -1), Vec3(-1, y, n + 1), Vec3(n + 1, y, n + 1), Vec3(-1, y, -1), Vec3(n + 1, y, n + 1), Vec3(n + 1, y, -1)}, grid, Voxelization::thin);
+    probe.note(static_cast<double>(bits.countOccupied()));
+    probe.bound("voxels set over n^2, - 1", static_cast<double>(bits.countOccupied()) / (double(n) * double(n)) - 1.0, 0.0);
 }
 
 }  // namespace
@@ -91,15 +91,15 @@ Group coneCases()
     auto& cases = group.cases;
     cases.push_back(refused("aperture 0", "specular and shadow cones of no width",
                             {"specular_aperture_degrees=0", "shadow_cone_aperture_degrees=0", "aperture_scale=0"},
-                            [](Settings& s) { s.cones.specularApertureDegrees = 0.0f; }));
+                            [](Settings& s) { s.cones.specular.apertureDegrees = 0.0f; }));
     cases.push_back(refused("aperture of 179 degrees", "wider than a cone can be traced", {"specular_aperture_degrees=179"},
-                            [](Settings& s) { s.cones.specularApertureDegrees = 179.0f; }));
-    cases.push_back(refused("zero cones", "cone_count = 0", {"cone_count=0"}, [](Settings& s) { s.cones.count = 0; }));
-    cases.push_back(refused("minus one cone", "cone_count = -1", {"cone_count=-1"}, [](Settings& s) { s.cones.count = -1; }));
-    cases.push_back(refused("more steps than 1e5", "max_steps = 100001", {"max_steps=100001"}, [](Settings& s) { s.cones.maxSteps = 100001; }));
+                            [](Settings& s) { s.cones.specular.apertureDegrees = 179.0f; }));
+    cases.push_back(refused("zero cones", "cone_count = 0", {"cone_count=0"}, [](Settings& s) { s.cones.set.count = 0; }));
+    cases.push_back(refused("minus one cone", "cone_count = -1", {"cone_count=-1"}, [](Settings& s) { s.cones.set.count = -1; }));
+    cases.push_back(refused("more steps than 1e5", "max_steps = 100001", {"max_steps=100001"}, [](Settings& s) { s.cones.march.maxSteps = 100001; }));
     cases.push_back(
-        refused("step 0, NaN, negative", "no step", {"step=0", "step=nan", "step=-1", "step=1e-50"}, [](Settings& s) { s.cones.step = std::nanf(""); }));
-    cases.push_back(refused("no sets of cones", "sets_per_pixel = 0", {"sets_per_pixel=0"}, [](Settings& s) { s.cones.setsPerPixel = 0; }));
+        refused("step 0, NaN, negative", "no step", {"step=0", "step=nan", "step=-1", "step=1e-50"}, [](Settings& s) { s.cones.march.step = std::nanf(""); }));
+    cases.push_back(refused("no sets of cones", "sets_per_pixel = 0", {"sets_per_pixel=0"}, [](Settings& s) { s.cones.set.setsPerPixel = 0; }));
     cases.push_back(finite("aperture of 1e-3 degrees", "specular cone", {"specular_aperture=fixed", "specular_aperture_degrees=0.001"}));
     cases.push_back(finite("aperture of 170 degrees", "specular cone", {"specular_aperture=fixed", "specular_aperture_degrees=170"}));
     cases.push_back(finite("aperture of 1e-38 degrees", "specular and shadow cones of denormal width",
@@ -124,7 +124,7 @@ Group coneCases()
                          for (const int count : {6, 32}) {
                              Settings settings = smallSettings(mode);
                              settings.voxel.resolution = 64;
-                             settings.cones.count = count;
+                             settings.cones.set.count = count;
                              const Frame frame = renderWorld(furnaceSphere(0.5f, 1.0f), settings, 8, 6);
                              probe.frame(frame);
                              probe.bound("irradiance over 0.5, - 1", meanOf(frame.irradiance, frame.gbuffer) / 0.5 - 1.0, 0.10);
@@ -242,11 +242,11 @@ void combinations(Mode mode, Probe& probe, std::uint32_t seed)
             applySetting(settings, assignment);
             which += assignment + " ";
         }
-        if (settings.cones.estimator == Estimator::slab) settings.cones.layerSelection = LayerSelection::touched;
-        if (settings.cones.layerSelection == LayerSelection::touched) settings.layers.overlap = 0.0f;
+        if (settings.cones.march.estimator == Estimator::slab) settings.cones.gather.layerSelection = LayerSelection::touched;
+        if (settings.cones.gather.layerSelection == LayerSelection::touched) settings.layers.overlap = 0.0f;
         // The least of an open range is a denormal: with it no cone moves, which has its own case.
-        settings.cones.step = std::max(settings.cones.step, 0.05f);
-        settings.cones.minDiameterVoxels = std::max(settings.cones.minDiameterVoxels, 0.05f);
+        settings.cones.march.step = std::max(settings.cones.march.step, 0.05f);
+        settings.cones.march.minDiameterVoxels = std::max(settings.cones.march.minDiameterVoxels, 0.05f);
         tryFrame(probe, settings, which);
     }
 }

@@ -83,8 +83,8 @@ double specularOfWall(Mode mode, double degrees)
     material.roughness = 0.5f;
     Settings settings = smallSettings(mode);
     settings.voxel.resolution = 64;
-    settings.cones.specularAperture = SpecularAperture::fixed;
-    settings.cones.specularApertureDegrees = float(degrees);
+    settings.cones.specular.aperture = SpecularAperture::fixed;
+    settings.cones.specular.apertureDegrees = float(degrees);
     const World& sphere = world;
     const Requirements needs;
     const OpacityPyramid opacity = buildPyramid(voxelize(sphere.scene, settings.voxel), settings.voxel);

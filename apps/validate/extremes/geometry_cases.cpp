@@ -96,10 +96,10 @@ void onVoxelFaces(Mode mode, Probe& probe)
         Settings settings = smallSettings(mode);
         settings.voxel.mode = kind;
         settings.voxel.resolution = 16;  // 12 voxels over 2 m, y = 0 on a face
-        const BitGrid grid = voxelize(world.scene, settings.voxel);
-        probe.output("voxelize", grid);
+        const BitGrid bits = voxelize(world.scene, settings.voxel);
+        probe.output("voxelize", bits);
         for (int x = 2; x < 14; ++x)
-            for (int z = 2; z < 14; ++z) probe.require(grid.occupied(x, 7, z) || grid.occupied(x, 8, z), "a hole in a wall on voxel faces");
+            for (int z = 2; z < 14; ++z) probe.require(bits.occupied(x, 7, z) || bits.occupied(x, 8, z), "a hole in a wall on voxel faces");
         probe.frame(renderWorld(world, settings));
     }
 }
@@ -146,10 +146,10 @@ Group geometryCases()
                          for (float size = 100.0f; size < 1e15f; size *= 100.0f)
                              for (const Voxelization kind : {Voxelization::conservative, Voxelization::thin, Voxelization::raster}) {
                                  const float y = 16.5f;
-                                 const BitGrid grid =
+                                 const BitGrid bits =
                                      voxelizeTriangles({Vec3(-size, y, -size), Vec3(0, y, 3.0f * size), Vec3(size, y, -size)}, {Vec3(0.0f), 1.0f, 32}, kind);
-                                 probe.output("voxelize", grid);
-                                 probe.bound("voxels set over 32^2, - 1", static_cast<double>(grid.countOccupied()) / 1024.0 - 1.0, 0.0);
+                                 probe.output("voxelize", bits);
+                                 probe.bound("voxels set over 32^2, - 1", static_cast<double>(bits.countOccupied()) / 1024.0 - 1.0, 0.0);
                              }
                      },
                      true});

@@ -103,7 +103,7 @@ void opposingNormals(Mode mode, Probe& probe)
     probe.output("lrsm", lrsm);
     for (const Backface backface : {Backface::cosine, Backface::step}) {
         ConeSettings cones = paperCones();
-        cones.backface = backface;
+        cones.gather.backface = backface;
         probe.require(sampleAt(lrsm, 0.5f, 0.5f, 0.5f, 0.25f, cones) == Vec3(0.0f), "light from normals that cancel");
     }
 }
@@ -118,7 +118,7 @@ void oneDepth(Mode mode, Probe& probe)
             probe.output("lrsm", lrsm);
             probe.require(lrsm.layers() == 1, "more layers than depths");
             ConeSettings cones = paperCones();
-            cones.layerSelection = LayerSelection::touched;
+            cones.gather.layerSelection = LayerSelection::touched;
             probe.bound("R - 1", double(sampleAt(lrsm, 0.5f, 0.5f, depth, 0.1f, cones).x) - 1.0, uniformBound(mode));
         }
     }
@@ -139,7 +139,7 @@ void strangeSamples(Mode mode, Probe& probe)
                 probe.note(double(out.x));
             }
     ConeSettings all = paperCones();
-    all.layerSelection = LayerSelection::touched;
+    all.gather.layerSelection = LayerSelection::touched;
     const Lrsm parted = buildLrsm(rsm, layerSettings(mode, 3, 2));
     probe.bound("sum over layers of a sphere far larger than the scene, - 1", double(sampleAt(parted, 0.5f, 0.5f, 0.5f, 1e10f, all).x) - 1.0,
                 uniformBound(mode));
@@ -241,7 +241,7 @@ Group depthCases()
                                               lrsm = buildLrsm(syntheticMap(64, texel, range), layerSettings(mode));
                                    probe.output("lrsm", lrsm);
                                    ConeSettings cones = paperCones();
-                                   cones.rsmMinLevel = 16.0f;  // the chain's top for both: spheres of kilometres and of millimetres read the same texel
+                                   cones.gather.rsmMinLevel = 16.0f;  // the chain's top for both: spheres of kilometres and of millimetres read the same texel
                                    double worst = 0.0;
                                    for (float z = 0.05f; z < 1.0f; z += 0.05f)
                                        worst = std::max(worst, std::abs(double(sampleAt(lrsm, 0.5f, 0.5f, z * range, 0.1f * range, cones).x) -
@@ -258,7 +258,7 @@ Group depthCases()
                             lrsm = buildLrsm(syntheticMap(64, texel, 1.0f, offset), layerSettings(mode));
                  probe.output("lrsm", lrsm);
                  ConeSettings cones = paperCones();
-                 cones.rsmMinLevel = 3.0f;
+                 cones.gather.rsmMinLevel = 3.0f;
                  double worst = 0.0;
                  for (float z = 0.05f; z < 1.0f; z += 0.05f)
                      worst =

@@ -27,10 +27,10 @@ inline LayerSettings layerSettings(Mode mode, int depthLayers = 2, int normalLay
 inline ConeSettings paperCones()
 {
     ConeSettings cones;
-    cones.estimator = Estimator::paper;
-    cones.layerSelection = LayerSelection::centre;
-    cones.backface = Backface::cosine;
-    cones.gaussian = GaussianMethod::exact;
+    cones.march.estimator = Estimator::paper;
+    cones.gather.layerSelection = LayerSelection::centre;
+    cones.gather.backface = Backface::cosine;
+    cones.gather.gaussian = GaussianMethod::exact;
     return cones;
 }
 

@@ -26,25 +26,24 @@ struct AxisSpan {
 double boxTransmittance(const ConeWorld& world, const RecordedSample& sample)
 {
     const ConeSettings& settings = world.settings;
-    const bool slab = settings.estimator == Estimator::slab;
+    const bool slab = settings.march.estimator == Estimator::slab;
     double transmittance = 1.0, depth = 0.0;
     for (int i = 0; i <= sample.step; ++i) {
         const MarchStep& step = sample.steps[i];
         const double length = double(step.end) - double(step.begin);
-        const float push = slab ? 0.0f : settings.push * 0.5f * step.diameter;
+        const float push = slab ? 0.0f : settings.march.push * 0.5f * step.diameter;
         const Vec3 offset = sample.ray.direction * step.middle + sample.ray.receiverNormal * push;
         if (slab && !step.readVoxels) continue;
         double density = boxDensity(world.opacity, sample.ray.originVoxels + offset, double(step.level), sample.ray.direction);
         if (slab) {
-            if (settings.subtractOwnPlane) density = std::max(0.0, density - double(ownPlaneDensity(world, sample.ray, offset, step.tapWidth)));
             depth += density * length;
             continue;
         }
         const double a = std::min(density, 1.0);
-        transmittance *= settings.opacity == OpacityModel::none ? 1.0 - a : std::pow(1.0 - a, double(settings.densityK) * length);
+        transmittance *= settings.march.opacity == OpacityModel::none ? 1.0 - a : std::pow(1.0 - a, double(settings.march.densityK) * length);
     }
     if (!slab) return transmittance;
-    return settings.transmittance == TransmittanceModel::linear ? std::max(0.0, 1.0 - depth) : std::exp(-double(settings.densityK) * depth);
+    return settings.march.transmittance == TransmittanceModel::linear ? std::max(0.0, 1.0 - depth) : std::exp(-double(settings.march.densityK) * depth);
 }
 
 }  // namespace
@@ -76,7 +75,7 @@ double boxDensity(const OpacityPyramid& pyramid, const Vec3& pVoxels, double lev
 
 ConeOpacity coneOpacity(const ConeWorld& world, const EmbreeScene& embree, const RecordedSample& sample, int side, const SampleKey& key)
 {
-    const float voxelSize = world.opacity.base.frame.voxelSize, start = world.settings.startVoxels;
+    const float voxelSize = world.opacity.base.grid.voxelSize, start = world.settings.march.startVoxels;
     const float reach = sample.steps[sample.step].end;
     int blocked = 0, blockedVoxels = 0;
     const std::vector<Vec3> bundle = coneBundle(sample.ray.direction, sample.tanHalf, side, key);

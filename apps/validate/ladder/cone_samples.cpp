@@ -87,8 +87,8 @@ void recordPixel(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
 {
     const std::size_t index = gbuffer.position.index(x, y);
     if (!gbuffer.covered(index)) return;
-    const GenericSampler sampler{world.opacity, world.settings.filterFraction};
-    const Receiver receiver = receiverAt(gbuffer, world.opacity.base.frame, world.settings, x, y);
+    const GenericSampler sampler{world.opacity, world.settings.march.filterFraction};
+    const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
     ConeCounts counts;
     recorder.pixel(x, y, static_cast<std::uint32_t>(index));
     gatherDiffuse<estimator>(world, sampler, plan, receiver, scratch, counts, recorder);
@@ -109,7 +109,7 @@ std::uint64_t lookupKey(std::uint32_t pixel, int cone, int step, std::uint64_t s
 
 SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, std::size_t count, std::uint64_t seed)
 {
-    const bool slab = world.settings.estimator == Estimator::slab;
+    const bool slab = world.settings.march.estimator == Estimator::slab;
     const std::size_t pixels = gbuffer.position.texels.size();
     std::vector<SampleRecorder> chunks((pixels + kPixelsPerChunk - 1) / kPixelsPerChunk, SampleRecorder(count, seed, slab));
     parallelFor(pixels, kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {

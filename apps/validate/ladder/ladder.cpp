@@ -53,7 +53,7 @@ class LadderWorld {
           embree_(scene),
           gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height})),
           plan_(planGather(settings.cones, needs, settings.voxel.resolution)),
-          phi_(settings.cones.gaussian, settings.cones.gaussianTableSize)
+          phi_(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize)
     {
         for (const Light& light : scene.lights) {
             samplers_.emplace_back(light);
@@ -78,7 +78,7 @@ class LadderWorld {
         sample.opacity[int(VisibilityRung::voxelRays)] = opacity.voxelRays;
         sample.opacity[int(VisibilityRung::boxMips)] = opacity.boxMips;
         sample.opacity[int(VisibilityRung::cone)] = opacity.cone;
-        if (settings_.cones.estimator == Estimator::slab) {
+        if (settings_.cones.march.estimator == Estimator::slab) {
             const SegmentEmission emission = segmentEmission(world(), rsms_, tracer, recorded, side_, key);
             sample.emission[int(EmissionRung::beam)] = emission.rays;
             sample.emission[int(EmissionRung::texels)] = emission.texels;
@@ -102,7 +102,7 @@ class LadderWorld {
         sample.centre = recorded.sphere.centre;
         sample.toReceiver = recorded.sphere.toReceiver;
         sample.radius = recorded.sphere.radius;
-        sample.distance = recorded.steps[recorded.step].middle * opacity_.base.frame.voxelSize;
+        sample.distance = recorded.steps[recorded.step].middle * opacity_.base.grid.voxelSize;
         sample.voxelLevel = double(recorded.steps[recorded.step].level);
         sample.weight = double(recorded.coneWeight) * (recorded.before - recorded.after);
         sample.emissionWeight = double(recorded.coneWeight) * recorded.before;
@@ -121,7 +121,7 @@ class LadderWorld {
         const CoveredSphere covered{dvec3(sphere.centre), double(sphere.radius), dvec3(sphere.toReceiver)};
         const TermSettings terms = TermSettings::of(settings_.cones);
         ConeSettings exactFractions = settings_.cones;
-        exactFractions.filterFraction = FilterFraction::exact;
+        exactFractions.march.filterFraction = FilterFraction::exact;
         double brightest = -1.0;
         Vec3 shipped(0.0f);
         for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -143,7 +143,7 @@ class LadderWorld {
                 sample.layers = footprint.layers;
                 sample.lightCosine = double(glm::dot(directionToLight(light.rsm.projection, sphere.centre), sphere.toReceiver));
                 const LightSpacePoint at = projectToLight(light.rsm.projection, sphere.centre);
-                sample.level = at.valid ? std::log2(double(sphere.radius) / double(at.texelSize)) + double(settings_.cones.rsmLevelBias) : 0.0;
+                sample.level = at.valid ? std::log2(double(sphere.radius) / double(at.texelSize)) + double(settings_.cones.gather.rsmLevelBias) : 0.0;
             }
         }
         rung(RadianceRung::algorithm1) = meanOf(dvec3(shipped));
@@ -167,15 +167,15 @@ std::vector<std::string> notesOn(const Settings& settings)
 {
     const ConeSettings& cones = settings.cones;
     std::vector<std::string> notes;
-    if (cones.estimator == Estimator::slab)
+    if (cones.march.estimator == Estimator::slab)
         notes.push_back(
             "estimator=slab gathers a segment's emission, not a sphere's L: the first ladder evaluates Algorithm 1 at the spheres of the steps where "
             "slab looks light up, weighed by the opacity that the step adds; the third is what the segments emit");
-    if (cones.backface != Backface::cosine) notes.push_back("N of Eq. 8 is taken as `backface` says from rung Eq. 5-8 on, not as the printed cosine");
-    if (cones.layerSelection == LayerSelection::touched)
+    if (cones.gather.backface != Backface::cosine) notes.push_back("N of Eq. 8 is taken as `backface` says from rung Eq. 5-8 on, not as the printed cosine");
+    if (cones.gather.layerSelection == LayerSelection::touched)
         notes.push_back("layer_selection=touched: rung Eq. 15 adds every layer that the sphere touches, without decay");
-    if (cones.vRadiusScale != 1.0f) notes.push_back("v_radius_scale widens the window of Eq. 12 from rung Eq. 10-12 on");
-    if (cones.rsmLevelBias != 0.0f || cones.rsmMinLevel != 0.0f) notes.push_back("rsm_level_bias and rsm_min_level enter at rung mips");
+    if (cones.gather.vRadiusScale != 1.0f) notes.push_back("v_radius_scale widens the window of Eq. 12 from rung Eq. 10-12 on");
+    if (cones.gather.rsmLevelBias != 0.0f || cones.gather.rsmMinLevel != 0.0f) notes.push_back("rsm_level_bias and rsm_min_level enter at rung mips");
     return notes;
 }
 
@@ -272,7 +272,7 @@ LadderScene climbLadder(const Scene& scene, const Camera& camera, const Requirem
             for (std::size_t i = first + begin; i < first + end; ++i) result.samples[i] = world.climb(drawn.samples[i], tracer);
         });
     }
-    describeAll(result, settings.cones.estimator == Estimator::slab, options.worstPerRung);
+    describeAll(result, settings.cones.march.estimator == Estimator::slab, options.worstPerRung);
     tell("rungs", 1.0);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return result;

@@ -31,7 +31,7 @@ struct TermSettings {
     LayerSelection selection = LayerSelection::centre;
     Backface backface = Backface::cosine;
     double vRadiusScale = 1.0;
-    static TermSettings of(const ConeSettings& cones) { return {cones.layerSelection, cones.backface, double(cones.vRadiusScale)}; }
+    static TermSettings of(const ConeSettings& cones) { return {cones.gather.layerSelection, cones.gather.backface, double(cones.gather.vRadiusScale)}; }
 };
 
 struct CoveredSphere {

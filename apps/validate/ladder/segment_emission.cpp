@@ -6,7 +6,7 @@ SegmentEmission segmentEmission(const ConeWorld& world, std::span<const Rsm* con
                                 const SampleKey& key)
 {
     const MarchStep& step = sample.steps[sample.step];
-    const float voxelSize = world.opacity.base.frame.voxelSize;
+    const float voxelSize = world.opacity.base.grid.voxelSize;
     SegmentEmission emission;
     const Beam beam{sample.ray.originWorld + sample.ray.direction * (step.begin * voxelSize), sample.ray.direction, 0.5f * step.diameter * voxelSize,
                     (step.end - step.begin) * voxelSize};

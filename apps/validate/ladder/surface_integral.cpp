@@ -50,13 +50,13 @@ struct RaySum {
 
 SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int side, const SampleKey& key)
 {
-    const Mat3 frame = frameFromNormal(sphere.toReceiver);
+    const Mat3 basis = basisFromNormal(sphere.toReceiver);
     RaySum halves[2];
     for (int j = 0; j < side; ++j)
         for (int i = 0; i < side; ++i) {
             const Vec2 at = sphere.radius * onDisk(stratum(i, j, side, key, Use::disk));
             const float reach = std::sqrt(std::max(0.0f, sphere.radius * sphere.radius - glm::dot(at, at)));
-            const Vec3 entry = sphere.centre + frame * Vec3(at, reach);
+            const Vec3 entry = sphere.centre + basis * Vec3(at, reach);
             const std::optional<RayHit> hit = tracer.closestHit({entry, -sphere.toReceiver, 0.0f, 2.0f * reach, RayKind::bounce});
             if (!hit || !facesRay(tracer.scene(), *hit)) continue;
             RaySum& half = halves[(i + j) % 2];
@@ -75,12 +75,12 @@ SurfaceIntegral integrateSurface(Tracer& tracer, const ConeSample& sphere, int s
 
 Vec3 integrateBeam(Tracer& tracer, const Beam& beam, int side, const SampleKey& key)
 {
-    const Mat3 frame = frameFromNormal(beam.direction);
+    const Mat3 basis = basisFromNormal(beam.direction);
     Vec3 sum(0.0f);
     for (int j = 0; j < side; ++j)
         for (int i = 0; i < side; ++i) {
             const Vec2 at = beam.radius * onDisk(stratum(i, j, side, key, Use::beam));
-            const std::optional<RayHit> hit = tracer.closestHit({beam.begin + frame * Vec3(at, 0.0f), beam.direction, 0.0f, beam.length, RayKind::bounce});
+            const std::optional<RayHit> hit = tracer.closestHit({beam.begin + basis * Vec3(at, 0.0f), beam.direction, 0.0f, beam.length, RayKind::bounce});
             if (hit && facesRay(tracer.scene(), *hit)) sum += diffuseRadiance(tracer, *hit, -beam.direction);
         }
     return sum / static_cast<float>(side * side);

@@ -148,7 +148,7 @@ TEST_CASE("scaling: steps are linear in cones of one aperture, and more than lin
     ScalingBase base = tinyBase();
     ScalingAxis axis = makeScalingAxis("cones", base);
     for (std::size_t i = 0; i < axis.points.size(); ++i) {  // beyond the wide cones of small sets, where the law is sqrt
-        axis.points[i].settings.cones.count = 32 << i;
+        axis.points[i].settings.cones.set.count = 32 << i;
         axis.points[i].x = 32 << i;
     }
     const ScalingResult cones = summarizeScaling(axis, runScaling(axis, 1).samples);

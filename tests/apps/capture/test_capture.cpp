@@ -49,19 +49,19 @@ std::vector<Variant> variants()
     Settings plain = smallSettings();
     Settings paper = smallSettings();
     paper.voxel.axes = OpacityAxes::isotropic;
-    paper.cones.estimator = Estimator::paper;
-    paper.cones.gaussian = GaussianMethod::table;
-    paper.cones.gaussianTableSize = 64;
-    paper.cones.rotation = Rotation::none;
-    paper.cones.filter = false;
+    paper.cones.march.estimator = Estimator::paper;
+    paper.cones.gather.gaussian = GaussianMethod::table;
+    paper.cones.gather.gaussianTableSize = 64;
+    paper.cones.set.rotation = Rotation::none;
+    paper.cones.set.filter = false;
     paper.layers.overlap = 0.1f;
-    paper.cones.layerSelection = LayerSelection::centre;
+    paper.cones.gather.layerSelection = LayerSelection::centre;
     paper.direct.shadows = Shadows::cone;
     paper.force.everything = true;
     Settings wide = smallSettings();
     wide.voxel.storage = wide.rsm.storage = wide.layers.storage = Storage::float32;
     wide.layers.dropEmpty = false;
-    wide.cones.setsPerPixel = 2;
+    wide.cones.set.setsPerPixel = 2;
     wide.force.everything = true;
     return {{"cornell-box", "plain", plain}, {"two-rooms", "paper", paper}, {"atrium", "float32", wide}};
 }
@@ -103,7 +103,7 @@ TEST_CASE("capture: through files and back every pass has the hash that the fram
     CHECK(hashOf(gbufferFromCapture(capture)) == expected["gbuffer"]);
     CHECK(hashOf(pictureFromCapture(capture, "direct.radiance")) == expected["direct"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["cones"]);
-    if (r.settings.cones.filter) CHECK(hashOf(irradianceFromCapture(capture)) == expected["filter"]);
+    if (r.settings.cones.set.filter) CHECK(hashOf(irradianceFromCapture(capture)) == expected["filter"]);
     CHECK(hashOf(pictureFromCapture(capture, "composite.combined")) == expected["composite"]);
     CHECK(manifestJson(capture).dump() == manifestJson(r.capture).dump());
 }
@@ -135,7 +135,7 @@ TEST_CASE("capture: each pass run anew on the captured output of the ones before
     CHECK(hashOf(traceDirect(gbuffer, scene, c.camera, rsms, &opacity, c.needs, c.settings.direct).radiance) == expected.at("direct"));
     CHECK(hashOf(traceCones(gbuffer, c.camera, opacity, lrsms, c.needs, c.settings.cones)) == expected.at("cones"));
     const Gathered gathered = gatheredFromCapture(c);
-    if (c.settings.cones.filter) CHECK(hashOf(filterIrradiance(gathered.irradiance, gbuffer)) == expected.at("filter"));
+    if (c.settings.cones.set.filter) CHECK(hashOf(filterIrradiance(gathered.irradiance, gbuffer)) == expected.at("filter"));
     const IndirectLight indirect = shadeIndirect(gbuffer, c.camera, irradianceFromCapture(c), gathered.specular);
     CHECK(hashOf(composite(pictureFromCapture(c, "direct.radiance"), indirect)) == expected.at("composite"));
 }
@@ -143,8 +143,8 @@ TEST_CASE("capture: each pass run anew on the captured output of the ones before
 TEST_CASE("capture: the single cones, weighted and added in their order, are the irradiance and the opacity", "[capture][cones]")
 {
     Settings settings = smallSettings();
-    settings.cones.setsPerPixel = 4;
-    settings.cones.count = 9;
+    settings.cones.set.setsPerPixel = 4;
+    settings.cones.set.count = 9;
     const Recording r = record("cornell-box", settings);
     const auto cones = r.capture.at("cones.diffuse").as<Vec4>();
     const auto irradiance = r.capture.at("cones.irradiance").as<Vec3>();

@@ -156,7 +156,7 @@ TEST_CASE("manifest: follows docs/capture.schema.json", "[capture][schema]")
     LRSM_NEED_PYTHON(python, "jsonschema");
     Settings specular = smallSettings();
     specular.force.everything = true;
-    specular.cones.gaussian = GaussianMethod::table;
+    specular.cones.gather.gaussian = GaussianMethod::table;
     const ScratchFolder scratch;
     scratch.write("box.json", manifestJson(boxCapture()).dump());
     scratch.write("rooms.json", manifestJson(record("two-rooms", specular).capture).dump());
@@ -185,13 +185,13 @@ TEST_CASE("capture: numpy alone computes passes anew, bit for bit", "[capture][n
     LRSM_NEED_PYTHON(python, "numpy");
     Settings paper = smallSettings();
     paper.voxel.axes = OpacityAxes::isotropic;
-    paper.cones.estimator = Estimator::paper;
+    paper.cones.march.estimator = Estimator::paper;
     paper.layers.overlap = 0.2f;
     paper.layers.depthLayers = 3;
-    paper.cones.layerSelection = LayerSelection::centre;
+    paper.cones.gather.layerSelection = LayerSelection::centre;
     paper.layers.halfRounding = HalfRounding::nearestEven;
-    paper.cones.setsPerPixel = 2;
-    paper.cones.filter = false;
+    paper.cones.set.setsPerPixel = 2;
+    paper.cones.set.filter = false;
     const auto [scene, settings] = GENERATE_COPY(table<std::string, Settings>({{"cornell-box", smallSettings()}, {"two-rooms", paper}}));
     const ScratchFolder scratch;
     write(scratch, record(scene, settings).capture);

@@ -565,7 +565,7 @@ TEST_CASE("hints: another setting, or something missing among the inputs, found 
                 if (made.name == buffer) b.bytes = made.bytes;
         });
     };
-    CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) { c.settings.cones.voxelLevelBias += 1.0f; }), "voxel_level_bias=-1"));
+    CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) { c.settings.cones.march.voxelLevelBias += 1.0f; }), "voxel_level_bias=-1"));
     CHECK(hinted(runWith("direct", "direct.radiance", [](Capture& c) { c.settings.direct.shadows = Shadows::off; }), "shadows=off"));
     CHECK(hinted(runWith("cones", "cones.diffuse", [](Capture& c) { c.lights[0].projection.up = -c.lights[0].projection.up; }), "v flipped"));
     CHECK(hinted(runWith("cones", "cones.diffuse",
@@ -635,7 +635,7 @@ TEST_CASE("bless: takes the candidate's bytes, records why, and refuses what is 
     other.width += 1;
     CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "the golden"));
     other = sharedGolden();
-    other.settings.cones.step = 0.25f;
+    other.settings.cones.march.step = 0.25f;
     CHECK(says(errorOf([&] { (void)blessed(sharedGolden(), other, "x", "1"); }), "step=0.25"));
     other = sharedGolden();
     other.buffers.pop_back();

@@ -132,7 +132,7 @@ TEST_CASE("advice: the finer of map and voxels is wasted", "[sweep][advice]")
     CHECK(adviceOn(advice, "start_voxels")->to == "2");
     const Settings applied = applyAdvice(settings, advice);
     CHECK(applied.voxel.resolution == 64);
-    CHECK(applied.cones.startVoxels == 2.0f);
+    CHECK(applied.cones.march.startVoxels == 2.0f);
     CHECK(adviceOn(adviseSettings(scene, analysisOf(scene, applied), applied, 48, 27), "voxel_resolution") == nullptr);  // taken once, it is not given again
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("what is left out changes no bit: random small scenes, forced and not"
             if (random() % 3u == 0) scene.lights.back().intensity = Vec3(0.0f);  // lights nothing
         }
         Settings lean = adviceSettings();
-        lean.cones.estimator = trial % 2 ? Estimator::paper : Estimator::slab;
+        lean.cones.march.estimator = trial % 2 ? Estimator::paper : Estimator::slab;
         Settings full = lean;
         full.force.everything = true;
         full.layers.dropEmpty = false;

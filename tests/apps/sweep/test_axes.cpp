@@ -70,8 +70,8 @@ TEST_CASE("a product of axes has every combination that has a meaning, and names
     CHECK(refused.at(0).find("cone_count=4 estimator=slab layer_selection=centre: ") == 0);
     const NamedSettings* one = labelled(all, "cone_count=4 estimator=paper layer_selection=centre");
     REQUIRE(one);
-    CHECK(one->settings.cones.count == 4);
-    CHECK(one->settings.cones.estimator == Estimator::paper);
+    CHECK(one->settings.cones.set.count == 4);
+    CHECK(one->settings.cones.march.estimator == Estimator::paper);
     CHECK(combine(preset("fast"), {}).size() == 1);
 }
 

@@ -44,7 +44,7 @@ Measurement rowNumber(int i)
     row.scene = i % 3 ? "plain" : "with \"quotes\", a comma\nand a line end";
     row.caseKey = "0123456789abcdef";
     row.label = "cone_count=" + std::to_string(i + 1);
-    row.settings.cones.count = i + 1;
+    row.settings.cones.set.count = i + 1;
     row.error.rmse = 1.0 / (i + 3);
     row.key = rowKeyOf(row.caseKey, row.settings);
     return row;
@@ -161,7 +161,7 @@ TEST_CASE("rows are kept in order, once each, and the CSV and the JSON say the s
     for (int i = 0; i < 4; ++i) CHECK(measurementJson(store.rows()[std::size_t(i)]) == measurementJson(rowNumber(i)));
     CHECK_FALSE(store.add(rowNumber(0)));
     CHECK(store.add(rowNumber(4)));
-    CHECK(store.find(rowNumber(4).key)->settings.cones.count == 5);
+    CHECK(store.find(rowNumber(4).key)->settings.cones.set.count == 5);
     CHECK_FALSE(store.find("no such key"));
     CHECK(store.rowsOfOtherVersions() == 0);
     store.writeTables();

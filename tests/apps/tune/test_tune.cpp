@@ -29,7 +29,7 @@ class MadeMachine {
         std::vector<TunePoint> points;
         for (std::size_t i = 0; i < made_.size(); ++i) {
             Settings settings;
-            settings.cones.count = int(i) + 1;
+            settings.cones.set.count = int(i) + 1;
             points.push_back({{std::to_string(i), settings}, made_[i].megabytes, {}, {}, {}, {}});
         }
         return points;
@@ -38,7 +38,7 @@ class MadeMachine {
     TuneResult tuned(TuneRequest request)
     {
         const auto row = [this](const NamedSettings& named, bool asked) {
-            const Made& made = made_[std::size_t(named.settings.cones.count - 1)];
+            const Made& made = made_[std::size_t(named.settings.cones.set.count - 1)];
             const double pixels = asked ? 4.0 : 1.0, slow = slowness ? slowness(runs++) : 1.0;
             Measurement m;
             m.settings = named.settings;
@@ -256,5 +256,5 @@ TEST_CASE("the shipped points are valid, all different, and hold the presets tha
     for (const char* name : {"fast", "balanced", "fine", "accurate"})
         CHECK(std::any_of(points.begin(), points.end(), [&](const NamedSettings& point) { return point.settings == preset(name); }));
     CHECK_THROWS_AS(settingsFromText({}, "cone_count=6 cone_count"), InputError);
-    CHECK(settingsFromText({}, "  cone_count=9  step=1 ").cones.count == 9);
+    CHECK(settingsFromText({}, "  cone_count=9  step=1 ").cones.set.count == 9);
 }

@@ -19,7 +19,7 @@ Settings smallSettings()
     Settings s;
     s.voxel.resolution = 128;
     s.rsm.resolution = 512;
-    s.cones.startVoxels = 1.5f;
+    s.cones.march.startVoxels = 1.5f;
     return s;
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("each half stands alone: the LRSM's radiance does not depend on the vo
     Settings hollow = settings;  // other voxelization, filter and opacity; the same voxel size
     hollow.voxel.mode = Voxelization::raster;
     hollow.voxel.mipFilter = MipFilter::max;
-    hollow.cones.startVoxels = 6.0f;
+    hollow.cones.march.startVoxels = 6.0f;
     const SplitSettings exactLrsm{Visibility::exact, Radiance::lrsm, 8}, voxelExact{Visibility::voxel, Radiance::exact, 8};
     CHECK(renderSplit(*scene, settings, exactLrsm).irradiance.texels == renderSplit(*scene, hollow, exactLrsm).irradiance.texels);
 

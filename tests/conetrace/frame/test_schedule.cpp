@@ -9,11 +9,11 @@ using namespace lrsm;
 TEST_CASE("schedule: ends at maxSteps; a step that no longer changes the distance is refused, not taken for the end", "[conetrace][schedule]")
 {
     ConeSettings settings;
-    settings.maxSteps = 7;
+    settings.march.maxSteps = 7;
     CHECK(makeSchedule(settings, 0.1f, 1e6f).steps.size() == 7);
-    settings.maxSteps = 100000;
-    settings.step = 1e-6f;
-    settings.minDiameterVoxels = 1e-3f;
-    settings.startVoxels = 1000.0f;
+    settings.march.maxSteps = 100000;
+    settings.march.step = 1e-6f;
+    settings.march.minDiameterVoxels = 1e-3f;
+    settings.march.startVoxels = 1000.0f;
     CHECK_THROWS_AS(makeSchedule(settings, 0.0f, 1e6f), InputError);
 }

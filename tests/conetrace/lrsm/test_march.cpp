@@ -18,7 +18,7 @@ using DVec3 = glm::dvec3;
 
 constexpr float kVoxelSize = 0.25f;  // not 1: metres and voxels must not be mistaken for each other
 constexpr int kResolution = 128;
-const VoxelFrame kFrame{Vec3(-0.5f * kVoxelSize * kResolution), kVoxelSize, kResolution};
+const VoxelGrid kFrame{Vec3(-0.5f * kVoxelSize * kResolution), kVoxelSize, kResolution};
 
 /// Unit vector at an angle from z.
 Vec3 tilted(double cosine, double azimuth)
@@ -32,7 +32,7 @@ Vec3 tilted(double cosine, double azimuth)
 Rsm litPlane(const Vec3& toLight, const Vec3& radiance, int resolution = 512)
 {
     LightProjection q;
-    const Mat3 axes = frameFromNormal(toLight);
+    const Mat3 axes = basisFromNormal(toLight);
     q.right = axes[0];
     q.up = axes[1];
     q.forward = -toLight;
@@ -55,8 +55,8 @@ struct World {
 
     World(const Rsm& rsm, const LayerSettings& layers, const ConeSettings& cones) : lrsms{buildLrsm(rsm, layers)}, settings(cones)
     {
-        opacity.base.frame = kFrame;
-        opacity.axes = cones.estimator == Estimator::slab ? OpacityAxes::directional : OpacityAxes::isotropic;
+        opacity.base.grid = kFrame;
+        opacity.axes = cones.march.estimator == Estimator::slab ? OpacityAxes::directional : OpacityAxes::isotropic;
     }
     ConeWorld view() const { return {opacity, lrsms, settings, phi}; }
 
@@ -65,8 +65,8 @@ struct World {
     {
         const MarchSchedule schedule = makeSchedule(settings, tanHalf, 1.74f * kResolution);
         MarchScratch scratch{std::vector<float>(schedule.steps.size())};
-        return settings.estimator == Estimator::slab ? marchSlab(view(), sampler, ray, schedule, scratch, counts, recorder)
-                                                     : marchPaper(view(), sampler, ray, schedule, scratch, counts, recorder);
+        return settings.march.estimator == Estimator::slab ? marchSlab(view(), sampler, ray, schedule, scratch, counts, recorder)
+                                                           : marchPaper(view(), sampler, ray, schedule, scratch, counts, recorder);
     }
     template <class Sampler>
     ConeResult march(const Sampler& sampler, const ConeRay& ray, float tanHalf) const
@@ -96,7 +96,7 @@ struct Mist {
 ConeSettings slabSettings(float step)
 {
     ConeSettings settings;
-    settings.step = step;
+    settings.march.step = step;
     return settings;
 }
 
@@ -116,7 +116,7 @@ TEST_CASE("slab: an infinite wall in thin air gives exactly L, for any step and 
         for (const double cosine : {1.0, 0.7, 0.3})
             for (int i = 0; i < 8; ++i) {
                 CAPTURE(step, cosine, i);
-                world.settings.step = step;
+                world.settings.march.step = step;
                 const ConeResult cone = world.march(Mist{}, rayToPlane(tilted(cosine, 0.4 + i), 3.0f + 0.117f * float(i)), 1e-4f);
                 for (int c = 0; c < 3; ++c) REQUIRE(double(cone.radiance[c] / radiance[c]) == Approx(1).margin(kTelescopeMaxError));
             }
@@ -129,7 +129,7 @@ TEST_CASE("slab: fitted layers lose no more than the tails they skip", "[conetra
     World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), fitted, ConeSettings{});
     for (const float step : {0.25f, 0.5f, 1.0f})
         for (const double cosine : {1.0, 0.5, 0.3}) {
-            world.settings.step = step;
+            world.settings.march.step = step;
             const double got = double(world.march(Mist{}, rayToPlane(tilted(cosine, 1.0), 3.1f), 1e-4f).radiance.x);
             CAPTURE(step, cosine, got);
             CHECK(got > 1 - kSkippedTails - kTelescopeMaxError);
@@ -162,7 +162,7 @@ TEST_CASE("slab: a cone that widens keeps L in the mean within a few percent, mo
     const double lightCosine = GENERATE(1.0, 0.6, 0.25);
     World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), ConeSettings{});
     for (const float step : {0.25f, 0.5f, 1.0f}) {
-        world.settings.step = step;
+        world.settings.march.step = step;
         double sum = 0;
         for (int i = 0; i < 72; ++i) {
             const double cosine = 0.3 + 0.7 * ((i * 5) % 72) / 71.0;
@@ -219,12 +219,12 @@ struct ByStep {
 ConeSettings paperSettings()
 {
     ConeSettings settings;
-    settings.estimator = Estimator::paper;
-    settings.opacity = OpacityModel::none;
-    settings.transmittanceCutoff = 0.0f;
-    settings.vRadiusScale = 16.0f;
-    settings.minDiameterVoxels = 8.0f;
-    settings.voxelLevelBias = 0.0f;
+    settings.march.estimator = Estimator::paper;
+    settings.march.opacity = OpacityModel::none;
+    settings.march.transmittanceCutoff = 0.0f;
+    settings.gather.vRadiusScale = 16.0f;
+    settings.march.minDiameterVoxels = 8.0f;
+    settings.march.voxelLevelBias = 0.0f;
     return settings;
 }
 
@@ -277,7 +277,7 @@ TEST_CASE("Eq. 1: a uniform medium of opacity a takes 1 - (1 - a)^n of a constan
 TEST_CASE("Eq. 1: the cut-off ends a cone that has nothing left to gather, and loses less than it says", "[conetrace][march][eq1]")
 {
     ConeSettings settings = paperSettings();
-    settings.transmittanceCutoff = 0.01f;
+    settings.march.transmittanceCutoff = 0.01f;
     const World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), oneLayer(), settings);
     NoRecorder recorder;
     ConeCounts counts;

@@ -112,15 +112,15 @@ TEST_CASE("settings: choices follow the order of their enumeration", "[settings]
     CHECK(s.voxel.mode == Voxelization::raster);
     CHECK(s.voxel.axes == OpacityAxes::isotropic);
     CHECK(s.direct.shadows == Shadows::off);
-    CHECK(s.cones.estimator == Estimator::paper);
-    CHECK(s.cones.backface == Backface::cosine);
-    CHECK(s.cones.gaussian == GaussianMethod::exact);
-    CHECK(s.cones.rotation == Rotation::azimuth);
-    CHECK(s.cones.specularAperture == SpecularAperture::fixed);
-    CHECK(s.cones.transmittance == TransmittanceModel::exponential);
-    CHECK(s.cones.opacity == OpacityModel::none);
-    CHECK(s.cones.layerSelection == LayerSelection::centre);
-    CHECK(s.cones.filterFraction == FilterFraction::fixed8);
+    CHECK(s.cones.march.estimator == Estimator::paper);
+    CHECK(s.cones.gather.backface == Backface::cosine);
+    CHECK(s.cones.gather.gaussian == GaussianMethod::exact);
+    CHECK(s.cones.set.rotation == Rotation::azimuth);
+    CHECK(s.cones.specular.aperture == SpecularAperture::fixed);
+    CHECK(s.cones.march.transmittance == TransmittanceModel::exponential);
+    CHECK(s.cones.march.opacity == OpacityModel::none);
+    CHECK(s.cones.gather.layerSelection == LayerSelection::centre);
+    CHECK(s.cones.march.filterFraction == FilterFraction::fixed8);
     CHECK(s.rsm.storage == Storage::float32);
     CHECK(s.voxel.storage == Storage::gpu);
     CHECK(s.layers.halfRounding == HalfRounding::nearestEven);
@@ -167,11 +167,11 @@ TEST_CASE("settings: JSON carries every value there and back to the bit", "[sett
     std::uniform_real_distribution<float> real(0.05f, 0.45f);
     for (int round = 0; round < 200; ++round) {
         Settings s;
-        s.cones.step = real(random);
-        s.cones.push = real(random);
-        s.cones.voxelLevelBias = -real(random) * 1e-7f;
+        s.cones.march.step = real(random);
+        s.cones.march.push = real(random);
+        s.cones.march.voxelLevelBias = -real(random) * 1e-7f;
         s.layers.overlap = real(random);
-        s.cones.count = 1 + round;
+        s.cones.set.count = 1 + round;
         s.layers.fitRanges = round % 2;
         Settings back = preset("accurate");
         applySettingsJson(back, Json::parse(settingsToJson(s).dump()), "test");
@@ -222,11 +222,11 @@ TEST_CASE("settings: a file that is not there, not JSON, empty or a folder is on
 TEST_CASE("settings: validate refuses what no assignment could have let in", "[settings]")
 {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (float ConeSettings::*field : {&ConeSettings::step, &ConeSettings::push, &ConeSettings::densityK, &ConeSettings::voxelLevelBias}) {
+    for (float MarchSettings::*field : {&MarchSettings::step, &MarchSettings::push, &MarchSettings::densityK, &MarchSettings::voxelLevelBias}) {
         Settings s;
-        s.cones.*field = nan;
+        s.cones.march.*field = nan;
         CHECK(contains(refusal([&] { validate(s); }), "=nan: must be"));
-        s.cones.*field = std::numeric_limits<float>::infinity();
+        s.cones.march.*field = std::numeric_limits<float>::infinity();
         CHECK(contains(refusal([&] { validate(s); }), "=inf: must be"));
     }
     Settings s;
@@ -235,11 +235,11 @@ TEST_CASE("settings: validate refuses what no assignment could have let in", "[s
     s = {};
     s.layers.overlap = 0.1f;
     CHECK(contains(refusal([&] { validate(s); }), "count light twice"));
-    s.cones.layerSelection = LayerSelection::centre;
+    s.cones.gather.layerSelection = LayerSelection::centre;
     CHECK(contains(refusal([&] { validate(s); }), "estimator=slab"));
-    s.cones.estimator = Estimator::paper;
+    s.cones.march.estimator = Estimator::paper;
     CHECK(refusal([&] { validate(s); }).empty());
-    s.cones.backface = static_cast<Backface>(7);
+    s.cones.gather.backface = static_cast<Backface>(7);
     CHECK(contains(refusal([&] { validate(s); }), "backface"));
 }
 
@@ -250,10 +250,10 @@ TEST_CASE("settings: every preset is valid; the literal one is the paper's readi
         CHECK(refusal([&] { validate(preset(name)); }).empty());
     }
     const Settings paper = preset("literal");
-    CHECK(paper.cones.estimator == Estimator::paper);
-    CHECK(paper.cones.opacity == OpacityModel::none);
-    CHECK(paper.cones.backface == Backface::cosine);
-    CHECK(paper.cones.count == 6);
+    CHECK(paper.cones.march.estimator == Estimator::paper);
+    CHECK(paper.cones.march.opacity == OpacityModel::none);
+    CHECK(paper.cones.gather.backface == Backface::cosine);
+    CHECK(paper.cones.set.count == 6);
     CHECK(paper.layers.depthLayers * paper.layers.normalLayers == 4);
     CHECK(paper.layers.outermostDecay);
     CHECK(contains(refusal([] { preset("best"); }), "literal, fast, balanced, fine, accurate"));

@@ -1,4 +1,4 @@
-// The estimator `slab`: emission and opacity integrated over segments. EXPONENTIAL: transmittance=exponential. OWN_PLANE: subtract_own_plane.
+// The estimator `slab`: emission and opacity integrated over segments. EXPONENTIAL: transmittance=exponential.
 
 uniform float densityK, transmittanceCutoff, emitterDelayTaps, emitterDelayVoxels, emitterSlantCap, normalOffsetVoxels;
 
@@ -20,18 +20,6 @@ float opticalDepthAt(int schedule, int last, float t)
     Step s = stepOf(schedule, i);
     float before = i > 0 ? opticalDepth[i - 1] : 0.0;
     return before + (opticalDepth[i] - before) * clamp((t - s.begin) / (s.end - s.begin), 0.0, 1.0);
-}
-
-float ownPlaneDensity(vec3 direction, vec3 offset, vec3 nGeometric, float tapWidth)
-{
-    vec3 n = abs(nGeometric);
-#ifdef DIRECTIONAL
-    float thickness = 1.0, area = dot(abs(direction), n);
-#else
-    float thickness = n.x + n.y + n.z, area = thickness;
-#endif
-    float fromPlane = dot(offset, nGeometric) + normalOffsetVoxels, variance = 0.25 * tapWidth * tapWidth + thickness * thickness / 12.0;
-    return area * 0.39894228 * exp(-0.5 * fromPlane * fromPlane / variance) / sqrt(variance);
 }
 
 vec3 emission(Light light, vec3 world, vec3 direction, int schedule, int index)
@@ -84,9 +72,6 @@ vec4 march(vec3 originWorld, vec3 originVoxels, vec3 direction, vec3 nGeometric,
             vec3 tap = sampleOpacity(originVoxels + offset, s.level);
             density = densityAlong(tap, direction);
             occupied = tap.x + tap.y + tap.z > 0.0;
-#ifdef OWN_PLANE
-            density = max(0.0, density - ownPlaneDensity(direction, offset, nGeometric, s.tapWidth));
-#endif
         }
         depth += density * (s.end - s.begin);
         opticalDepth[i] = depth;

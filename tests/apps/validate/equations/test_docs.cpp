@@ -61,10 +61,10 @@ TEST_CASE("defaults that are choices: a change of one is a change of every pictu
     CHECK(s.direct.depthBiasTexels == 0.75f);
     CHECK(s.direct.shadowConeApertureDegrees == 2.0f);
     const ConeSettings& c = s.cones;
-    CHECK((c.count == 6 && c.setsPerPixel == 1 && c.maxSteps == 1024 && c.gaussianTableSize == 1024));
-    CHECK(
-        (c.apertureScale == 0.5f && c.step == 0.5f && c.startVoxels == 3.0f && c.normalOffsetVoxels == 1.0f && c.minDiameterVoxels == 1.0f && c.push == 0.0f));
-    CHECK((c.transmittanceCutoff == 0.01f && c.densityK == 2.0f && c.voxelLevelBias == -2.0f));
-    CHECK((c.emitterDelayTaps == 2.0f && c.emitterDelayVoxels == 0.75f && c.emitterSlantCap == 0.5f));
-    CHECK((c.vRadiusScale == 1.0f && c.rsmLevelBias == 0.0f && c.rsmMinLevel == 0.0f && c.specularApertureDegrees == 10.0f));
+    CHECK((c.set.count == 6 && c.set.setsPerPixel == 1 && c.march.maxSteps == 1024 && c.gather.gaussianTableSize == 1024));
+    CHECK((c.set.apertureScale == 0.5f && c.march.step == 0.5f && c.march.startVoxels == 3.0f && c.march.normalOffsetVoxels == 1.0f &&
+           c.march.minDiameterVoxels == 1.0f && c.march.push == 0.0f));
+    CHECK((c.march.transmittanceCutoff == 0.01f && c.march.densityK == 2.0f && c.march.voxelLevelBias == -2.0f));
+    CHECK((c.gather.emitterDelayTaps == 2.0f && c.gather.emitterDelayVoxels == 0.75f && c.gather.emitterSlantCap == 0.5f));
+    CHECK((c.gather.vRadiusScale == 1.0f && c.gather.rsmLevelBias == 0.0f && c.gather.rsmMinLevel == 0.0f && c.specular.apertureDegrees == 10.0f));
 }

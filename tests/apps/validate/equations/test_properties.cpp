@@ -108,7 +108,7 @@ TEST_CASE("properties of Algorithm 1: light times 2^k is 2^k times the radiance,
             for (float& value : texel.radiance) value *= scale;
         const ConeSample cone{Vec3(between(-2.1f, 2.1f), between(-2.0f, 2.0f), between(-2.1f, 2.1f)), between(0.01f, 2.0f), Vec3(0.6f, 0.8f, 0.0f)};
         ConeSettings cones;
-        cones.backface = *rc::gen::element(Backface::cosine, Backface::step);
+        cones.gather.backface = *rc::gen::element(Backface::cosine, Backface::step);
         const NormalCdf phi;
         const Vec3 once = sampleLrsm(lrsm, cone, cones, phi);
         RC_ASSERT(sampleLrsm(scaled, cone, cones, phi) == once * scale);
@@ -119,14 +119,14 @@ TEST_CASE("properties of Algorithm 1: light times 2^k is 2^k times the radiance,
 TEST_CASE("properties of Eq. 1: opacity composes, and transmittance never grows", "[equations][property][eq1]")
 {
     ConeSettings settings;
-    settings.opacity = OpacityModel::density;
+    settings.march.opacity = OpacityModel::density;
     CHECK(rc::check("two steps are one of the sum of their lengths", [&] {
         ConeSettings s = settings;
-        s.densityK = between(0.25f, 4.0f);
+        s.march.densityK = between(0.25f, 4.0f);
         const float a = between(0.0f, 1.0f), one = between(0.01f, 4.0f), two = between(0.01f, 4.0f);
         const double apart = (1.0 - double(stepOpacity(a, one, s))) * (1.0 - double(stepOpacity(a, two, s))),
                      together = 1.0 - double(stepOpacity(a, one + two, s));
-        RC_ASSERT(std::abs(apart - together) <= 3.0 * double(kStepOpacityMaxError) * std::max(1.0, double(s.densityK * (one + two)) / 16.0));
+        RC_ASSERT(std::abs(apart - together) <= 3.0 * double(kStepOpacityMaxError) * std::max(1.0, double(s.march.densityK * (one + two)) / 16.0));
     }));
     CHECK(rc::check("in [0, 1] and growing with density and length", [&] {
         const float a = between(0.0f, 1.0f), more = between(a, 1.0f), length = between(0.01f, 8.0f), longer = between(1.0f, 4.0f);
@@ -137,7 +137,7 @@ TEST_CASE("properties of Eq. 1: opacity composes, and transmittance never grows"
     }));
     CHECK(rc::check("transmittance is 1 in clear air, falls, and stays within [0, 1]", [&] {
         ConeSettings s = settings;
-        s.transmittance = *rc::gen::element(TransmittanceModel::linear, TransmittanceModel::exponential);
+        s.march.transmittance = *rc::gen::element(TransmittanceModel::linear, TransmittanceModel::exponential);
         const float depth = between(0.0f, 8.0f), more = between(0.0f, 8.0f), t = transmittanceOf(depth, s);
         RC_ASSERT(transmittanceOf(0.0f, s) == 1.0f);
         RC_ASSERT(t >= 0.0f && t <= 1.0f);

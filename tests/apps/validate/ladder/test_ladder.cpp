@@ -24,13 +24,13 @@ Settings smallSettings()
     settings.voxel.axes = OpacityAxes::isotropic;
     settings.rsm.resolution = 128;
     settings.layers.overlap = 0.1f;
-    settings.cones.estimator = Estimator::paper;
-    settings.cones.apertureScale = 1.0f;
-    settings.cones.rotation = Rotation::none;
-    settings.cones.layerSelection = LayerSelection::centre;
-    settings.cones.backface = Backface::cosine;
-    settings.cones.gaussian = GaussianMethod::table;
-    settings.cones.voxelLevelBias = -1.0f;
+    settings.cones.march.estimator = Estimator::paper;
+    settings.cones.set.apertureScale = 1.0f;
+    settings.cones.set.rotation = Rotation::none;
+    settings.cones.gather.layerSelection = LayerSelection::centre;
+    settings.cones.gather.backface = Backface::cosine;
+    settings.cones.gather.gaussian = GaussianMethod::table;
+    settings.cones.march.voxelLevelBias = -1.0f;
     return settings;
 }
 
@@ -62,7 +62,7 @@ struct SmallFrame {
           opacity(buildPyramid(voxelize(scene, s.voxel), s.voxel)),
           gbuffer(renderGBuffer(scene, scene.cameras[0], needs, {16, 12})),
           plan(planGather(settings.cones, needs, settings.voxel.resolution)),
-          phi(settings.cones.gaussian, settings.cones.gaussianTableSize)
+          phi(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize)
     {
         for (const Light& light : scene.lights) lrsms.push_back(buildLrsm(renderRsm(scene, light, needs, s.rsm), s.layers));
     }
@@ -134,7 +134,7 @@ TEST_CASE("samples are drawn without bias: every lookup as often as any other, o
 {
     Settings settings = smallSettings();
     settings.voxel.resolution = 32;
-    settings.cones.estimator = GENERATE(Estimator::paper, Estimator::slab);
+    settings.cones.march.estimator = GENERATE(Estimator::paper, Estimator::slab);
     const SmallFrame frame(settings);
     const SampledFrame all = frame.draw(1u << 24, 1);
     REQUIRE(all.samples.size() == all.lookups);
@@ -177,9 +177,9 @@ TEST_CASE("samples are the march's own: found again, in order, with the transmit
     for (const RecordedSample& s : many.samples) {
         CHECK(s.steps[s.step].middle > 0.0f);
         CHECK(s.before >= s.after);
-        const Vec3 along = s.ray.originWorld + s.ray.direction * (s.steps[s.step].middle * frame.opacity.base.frame.voxelSize);
+        const Vec3 along = s.ray.originWorld + s.ray.direction * (s.steps[s.step].middle * frame.opacity.base.grid.voxelSize);
         CHECK(glm::length(along - s.sphere.centre) < 1e-5f);
-        CHECK(s.sphere.radius == Approx(0.5f * s.steps[s.step].diameter * frame.opacity.base.frame.voxelSize));
+        CHECK(s.sphere.radius == Approx(0.5f * s.steps[s.step].diameter * frame.opacity.base.grid.voxelSize));
     }
 }
 
@@ -258,16 +258,16 @@ TEST_CASE("each setting moves its own rung and those below it, none above", "[la
     };
     CHECK(firstChanged([](Settings&) {}) == kRadianceRungs);
     CHECK(firstChanged([](Settings& s) { s.rsm.resolution = 64; }) == int(RadianceRung::eq3));
-    CHECK(firstChanged([](Settings& s) { s.cones.backface = Backface::step; }) == int(RadianceRung::eq5));
-    CHECK(firstChanged([](Settings& s) { s.cones.vRadiusScale = 2.0f; }) == int(RadianceRung::eq12));
+    CHECK(firstChanged([](Settings& s) { s.cones.gather.backface = Backface::step; }) == int(RadianceRung::eq5));
+    CHECK(firstChanged([](Settings& s) { s.cones.gather.vRadiusScale = 2.0f; }) == int(RadianceRung::eq12));
     CHECK(firstChanged([](Settings& s) { s.layers.depthLayers = 3; }) == int(RadianceRung::eq14));
     CHECK(firstChanged([](Settings& s) { s.layers.overlap = 0.3f; }) == int(RadianceRung::eq15));
     CHECK(firstChanged([](Settings& s) { s.layers.outermostDecay = true; }) == int(RadianceRung::eq15));
-    CHECK(firstChanged([](Settings& s) { s.cones.rsmLevelBias = 1.0f; }) == int(RadianceRung::mips));
+    CHECK(firstChanged([](Settings& s) { s.cones.gather.rsmLevelBias = 1.0f; }) == int(RadianceRung::mips));
     CHECK(firstChanged([](Settings& s) { s.rsm.storage = Storage::float32; }) == int(RadianceRung::table1));
     CHECK(firstChanged([](Settings& s) { s.layers.halfRounding = HalfRounding::nearestEven; }) == int(RadianceRung::table1));
-    CHECK(firstChanged([](Settings& s) { s.cones.gaussianTableSize = 16; }) == int(RadianceRung::algorithm1));
-    CHECK(firstChanged([](Settings& s) { s.cones.filterFraction = FilterFraction::fixed8; }) <= int(RadianceRung::algorithm1));
+    CHECK(firstChanged([](Settings& s) { s.cones.gather.gaussianTableSize = 16; }) == int(RadianceRung::algorithm1));
+    CHECK(firstChanged([](Settings& s) { s.cones.march.filterFraction = FilterFraction::fixed8; }) <= int(RadianceRung::algorithm1));
 }
 
 TEST_CASE("the furnace: Eq. 2 is the wall's radiance wherever a sphere meets the wall, exact rays close every cone", "[ladder][eq2][furnace]")

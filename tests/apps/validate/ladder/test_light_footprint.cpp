@@ -68,8 +68,8 @@ TEST_CASE("where every assumption holds, every rung gives L: a lit wall that fac
 
     if (radius > 0.5) return;  // the trilinear lookup would reach beyond the map
     ConeSettings cones;
-    cones.layerSelection = LayerSelection::centre;
-    cones.backface = Backface::cosine;
+    cones.gather.layerSelection = LayerSelection::centre;
+    cones.gather.backface = Backface::cosine;
     const Lrsm lrsm = buildLrsm(rsm, layers);
     const ConeSample sample{Vec3(sphere.centre), static_cast<float>(radius), Vec3(0, 1, 0)};
     CHECK(twin::algorithm1(lrsm, twin::project(lrsm.projection, sphere.centre), sample, cones, 0.0).radiance.x == Approx(2.0).epsilon(1e-6));

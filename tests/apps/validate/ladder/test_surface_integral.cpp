@@ -96,13 +96,13 @@ TEST_CASE("opacity by rays: a cone that faces a wall is blocked by the solid ang
     VoxelSettings voxels;
     voxels.resolution = 64;
     const OpacityPyramid opacity = buildPyramid(voxelize(scene, voxels), voxels);
-    const float voxelSize = opacity.base.frame.voxelSize;
+    const float voxelSize = opacity.base.grid.voxelSize;
     ConeSettings cones;
-    cones.estimator = Estimator::paper;
+    cones.march.estimator = Estimator::paper;
     const NormalCdf phi;
     const ConeWorld world{opacity, {}, cones, phi};
     RecordedSample sample;
-    sample.ray = {Vec3(0.0f), opacity.base.frame.voxelsFromWorld(Vec3(0.0f)), Vec3(0, 0, 1), Vec3(0, 0, 1)};
+    sample.ray = {Vec3(0.0f), opacity.base.grid.voxelsFromWorld(Vec3(0.0f)), Vec3(0, 0, 1), Vec3(0, 0, 1)};
     sample.tanHalf = 0.57735027f;
     sample.after = 0.25;
     const double reach = GENERATE(1.5, 2.1, 2.25, 4.0);  // metres; the wall is 2 m ahead, 2.31 m at the cone's rim
@@ -128,7 +128,7 @@ TEST_CASE("a box is the mean of the voxels in it, by their exact share; a wall k
     voxels.storage = Storage::float32;
     voxels.axes = OpacityAxes::isotropic;
     const OpacityPyramid iso = buildPyramid(voxelize(wall, voxels), voxels);
-    const Vec3 p = iso.base.frame.voxelsFromWorld(Vec3(0.7f, -1.1f, 0.3f));
+    const Vec3 p = iso.base.grid.voxelsFromWorld(Vec3(0.7f, -1.1f, 0.3f));
     const double level = GENERATE(0.0, 0.4, 1.0, 2.3, 3.0, 4.6);
     const double edge = std::exp2(level);
     double mean = 0.0;  // by brute force over the bits
