@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/math.h"
-#include "lrsm/float4.h"
+#include "core/base/simd.h"
 #include "lrsm/layers.h"
 
 /// The sampler of the LRSM, in two steps: where a footprint lies (once a light) and what a layer holds there (once a layer).

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/base/simd.h"
 #include "core/settings/settings.h"
-#include "lrsm/float4.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ inline Float4 centredCdfPolynomial(Float4 x)
 {
     constexpr float p0 = kCdfNumerator[0], p1 = kCdfNumerator[1], p2 = kCdfNumerator[2], p3 = kCdfNumerator[3], p4 = kCdfNumerator[4], p5 = kCdfNumerator[5];
     constexpr float q1 = kCdfDenominator[1], q2 = kCdfDenominator[2], q3 = kCdfDenominator[3], q4 = kCdfDenominator[4];
-    const Float4 limit = splat4(kCdfLimit), half = splat4(0.5f);
+    const Float4 limit = splat(kCdfLimit), half = splat(0.5f);
     x = x > limit ? limit : x;
     x = x < -limit ? -limit : x;
     const Float4 t = x * x;
@@ -62,7 +62,7 @@ class NormalCdf {
         if (x != x) return x;
         switch (method_) {
         case GaussianMethod::table: return lookUp(x);
-        case GaussianMethod::polynomial: return 0.5f + centredCdfPolynomial(splat4(x))[0];
+        case GaussianMethod::polynomial: return 0.5f + centredCdfPolynomial(splat(x))[0];
         default: return static_cast<float>(normalCdfExact(x));
         }
     }

@@ -39,7 +39,7 @@ class OpacitySampler {
         const int lower = int(level);
         const float f = level - float(lower);
         Float4 result = blended(p, lower);
-        if (f > 0.0f) result = sampling::lerp(result, blended(p, lower + 1), sampling::splat(f));
+        if (f > 0.0f) result = sampling::lerp(result, blended(p, lower + 1), splat(f));
         return decoded(result);
     }
 
@@ -54,21 +54,19 @@ class OpacitySampler {
     bool empty(const Vec3& pVoxels, float level) const { return knownEmpty(Float4{pVoxels.x, pVoxels.y, pVoxels.z, 0.0f}, level); }
 
   private:
-    using Float4 = sampling::Float4;
-    using Int4 = sampling::Int4;
     using Texel = std::conditional_t<storage == Storage::gpu, std::uint8_t, float>;
     static constexpr float kOne = storage == Storage::gpu ? 255.0f : 1.0f;
     static constexpr std::size_t kChannels = axes == OpacityAxes::directional ? 3 : 1;
 
     static Vec3 decoded(Float4 v)
     {
-        if constexpr (storage == Storage::gpu) v /= sampling::splat(255.0f);
+        if constexpr (storage == Storage::gpu) v /= splat(255.0f);
         return {v[0], v[1], v[2]};
     }
 
     bool knownEmpty(Float4 p, float level) const
     {
-        if (!sampling::all((p >= sampling::splat(0.0f)) & (p < sampling::splat(float(resolution_))))) return false;
+        if (!sampling::all((p >= splat(0.0f)) & (p < splat(float(resolution_))))) return false;
         const Int4 brick = __builtin_convertvector(p, Int4) >> 2;
         return level + 1.0f <= float(emptyLevels_[(std::size_t(brick[2]) * brickEdge_ + std::size_t(brick[1])) * brickEdge_ + std::size_t(brick[0])]);
     }
@@ -78,15 +76,15 @@ class OpacitySampler {
     {
         const int n = resolution_ >> level;
         const auto at = sampling::footprint<fraction>(p, sampling::inversePower(level), n);
-        if (level == 0) return sampling::splat(blendedBits(at));
+        if (level == 0) return splat(blendedBits(at));
 
         const auto last = unsigned(n - 1);
         const bool inside = unsigned(at.cell[0]) < last && unsigned(at.cell[1]) < last && unsigned(at.cell[2]) < last;
         const Texel* texels = texels_ + levelOffset_[level] * kChannels;
         if constexpr (axes == OpacityAxes::isotropic) {
-            return sampling::splat(inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at));
+            return splat(inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at));
         } else {
-            return (inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at)) * sampling::splat(sampling::inversePower(std::min(level, 3)));
+            return (inside ? blendedInside(texels, n, at) : blendedAtBorder(texels, n, at)) * splat(sampling::inversePower(std::min(level, 3)));
         }
     }
 
@@ -129,7 +127,7 @@ class OpacitySampler {
             const Texel* t = texels + offset[0][dx] + offset[1][dy] + offset[2][dz];
             const Int4 mask = Int4{} - std::int32_t(exists[0][dx] && exists[1][dy] && exists[2][dz]);
             if constexpr (axes == OpacityAxes::isotropic)
-                corner[k] = sampling::keep(mask, sampling::splat(float(t[0])));
+                corner[k] = sampling::keep(mask, splat(float(t[0])));
             else
                 corner[k] = sampling::keep(mask, sampling::loadThree(t));
         }
@@ -148,8 +146,8 @@ class OpacitySampler {
         if (bits == 0) return 0.0f;
         if (bits == 0x330033u) return kOne;
         const Int4 pattern = Int4{} + std::int32_t(bits);
-        const Float4 lower = sampling::keep((pattern & Int4{0x1, 0x10, 0x10000, 0x100000}) != 0, sampling::splat(kOne));
-        const Float4 upper = sampling::keep((pattern & Int4{0x2, 0x20, 0x20000, 0x200000}) != 0, sampling::splat(kOne));
+        const Float4 lower = sampling::keep((pattern & Int4{0x1, 0x10, 0x10000, 0x100000}) != 0, splat(kOne));
+        const Float4 upper = sampling::keep((pattern & Int4{0x2, 0x20, 0x20000, 0x200000}) != 0, splat(kOne));
         return sampling::blendRows(lower, upper, at.f);
     }
 

@@ -1,25 +1,19 @@
 #pragma once
 
+#include "core/base/simd.h"
 #include "core/settings/settings.h"
 
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
-/// Four lanes at a time, with GCC/clang vector extensions: lane by lane plain IEEE arithmetic, so both compilers give the same bits, and
-/// nothing beyond SSE2 is needed.
+/// What the opacity pyramid's lookups are made of, four lanes at a time (core/base/simd.h).
 namespace lrsm::sampling {
 
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Long2 = std::int64_t __attribute__((vector_size(16)));
 using Short8 = std::int16_t __attribute__((vector_size(16)));
 using Byte16 = std::int8_t __attribute__((vector_size(16)));
 
-inline Float4 splat(float v)
-{
-    return Float4{v, v, v, v};
-}
 inline bool all(Int4 mask)
 {
     const auto halves = reinterpret_cast<Long2>(mask);

@@ -16,17 +16,6 @@ constexpr float kNormalOffsetVoxels = 1.5f;
 constexpr float kStartVoxels = 1.0f;
 constexpr float kTransmittanceCutoff = 0.01f;
 
-/// Distance along the ray at which it leaves the cube [0, resolution] for good, in voxels; <= 0 when the cube lies behind.
-float exitDistance(const Vec3& origin, const Vec3& direction, float resolution)
-{
-    float exit = kInfinity;
-    for (int k = 0; k < 3; ++k) {
-        if (direction[k] > 0.0f) exit = std::min(exit, (resolution - origin[k]) / direction[k]);
-        if (direction[k] < 0.0f) exit = std::min(exit, -origin[k] / direction[k]);
-    }
-    return exit;
-}
-
 /// What is left of the transmittance after half a sphere diameter more of the cone. Area densities add up (surfaces rarely overlap as seen
 /// from the receiver: a wall of density 1 is just opaque); opacities of the isotropic pyramid multiply.
 float attenuate(float transmittance, const OpacityPyramid& opacity, const Vec3& centre, const Vec3& direction, float diameter)
@@ -106,7 +95,7 @@ float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Ve
 {
     const VoxelGrid& grid = opacity.base.grid;
     const Vec3 origin = grid.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
-    const float end = std::min(distance / grid.voxelSize, exitDistance(origin, toLight, float(grid.resolution)));
+    const float end = std::min(distance / grid.voxelSize, gridExit(origin, toLight, grid.resolution));
 
     float transmittance = 1.0f;
     for (float t = kStartVoxels; t < end && transmittance > kTransmittanceCutoff;) {

@@ -99,18 +99,6 @@ concept RecordsLookups = Recorder::active && requires(Recorder& recorder, const 
     recorder.lookup(sample);
 };
 
-/// Distance, in base voxels, at which a ray leaves the grid's cube (0 if it never meets it).
-inline float gridExit(const Vec3& originVoxels, const Vec3& direction, int resolution)
-{
-    float exit = kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (direction[axis] == 0.0f) continue;
-        const float wall = direction[axis] > 0.0f ? static_cast<float>(resolution) : 0.0f;
-        exit = std::min(exit, (wall - originVoxels[axis]) / direction[axis]);
-    }
-    return std::max(exit, 0.0f);
-}
-
 /// Area density, per base voxel of length, that a cone along `direction` meets.
 inline float densityAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
 {

@@ -1,11 +1,19 @@
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 
+/// Four lanes at a time, with the vector extensions that GCC and clang share: lane by lane plain IEEE arithmetic, so the bits are those of scalar code, and
+/// nothing beyond SSE2 (or NEON) is needed.
 namespace lrsm {
 
-/// Four floats in one register (a compiler extension that g++ and clang++ share). Each lane is IEEE arithmetic, so the bits are those of scalar code.
 using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+inline Float4 splat(float v)
+{
+    return Float4{v, v, v, v};
+}
 
 /// `values` is 16-byte aligned.
 inline Float4 loadFloat4(const float* values)
@@ -18,11 +26,6 @@ inline Float4 loadFloat4(const float* values)
 inline void storeFloat4(float* values, const Float4& v)
 {
     std::memcpy(__builtin_assume_aligned(values, 16), &v, sizeof v);
-}
-
-inline Float4 splat4(float v)
-{
-    return Float4{v, v, v, v};
 }
 
 }  // namespace lrsm
