@@ -106,7 +106,7 @@ void describeTables(Catalogue& out, const CaptureTables& tables)
     };
     rows(tables.directions, {"rotation", "cone", "component"}, {"x", "y", "z"}, {"axes of the diffuse cones, unit", "tangent frame, z along the normal", ""});
     rows(tables.rotation, {"row", "column"}, {}, {"rotation of the pixel at (row & 3, column & 3)", "", ""});
-    rows(tables.schedules, {"schedule", "step", "component"}, {"middle", "begin", "end", "diameter", "level", "tap_width", "reads_voxels"},
+    rows(tables.schedules, {"schedule", "step", "component"}, {"middle", "begin", "end", "diameter", "level", "tap_width", "reads_voxels", "settled"},
          {"where a cone takes its samples; rows of 0 after the last step", "along the cone from its apex", "base voxels"});
     rows(tables.steps, {"schedule"}, {}, {"steps of each schedule", "", ""});
     if (!tables.gaussian.shape.empty()) rows(tables.gaussian, {"entry"}, {}, {"Phi over [-5, 5], linear between entries", "", ""});

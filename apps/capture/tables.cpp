@@ -9,7 +9,7 @@ namespace lrsm {
 namespace {
 
 constexpr int kPattern = 4;  ///< edge of the square of pixels over which directions alternate
-constexpr std::size_t kStepColumns = 7;
+constexpr std::size_t kStepColumns = 8;
 
 template <class T>
 Table tableOf(std::string name, Dtype dtype, std::vector<std::size_t> shape, const std::vector<T>& values)
@@ -40,7 +40,7 @@ void addSchedules(CaptureTables& tables)
         counts.push_back(static_cast<std::uint32_t>(all[s]->steps.size()));
         float* row = values.data() + s * longest * kStepColumns;
         for (const MarchStep& step : all[s]->steps)
-            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f})
+            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f, step.settled})
                 *row++ = value;
     }
     tables.schedules = tableOf("tables.schedules", Dtype::f4, {all.size(), longest, kStepColumns}, values);

@@ -30,6 +30,18 @@ MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
     throw InputError(place.str(), text.str());
 }
 
+/// From the last segment back: the least distance that any segment after it looks back to.
+void settle(MarchSchedule& schedule, const LrsmGatherSettings& settings)
+{
+    if (schedule.steps.empty()) return;
+    float settled = schedule.steps.back().end;
+    for (auto step = schedule.steps.rbegin(); step != schedule.steps.rend(); ++step) {
+        step->settled = settled;
+        const float farthestDelay = (settings.emitterDelayTaps * step->tapWidth + settings.emitterDelayVoxels) / settings.emitterSlantCap;
+        settled = std::min(settled, step->middle - farthestDelay);
+    }
+}
+
 }  // namespace
 
 MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float reachVoxels)
@@ -55,6 +67,7 @@ MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float re
         schedule.steps.push_back(step);
         t = step.end;
     }
+    settle(schedule, settings.gather);
     return schedule;
 }
 

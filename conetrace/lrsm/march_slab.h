@@ -18,6 +18,11 @@
 /// Opacity is area density: a wall covers each ray once, coverage adds, and T = max(0, 1 - integral of density).
 namespace lrsm {
 
+/// Widths of its voxel that a quadrilinear tap reaches through: a trilinear kernel is two voxels wide, blended with that of the level above.
+inline constexpr float kKernelReachTaps = 3.0f;
+/// Rates are capped where light grazes the surface: g = <n.v> / <n.l>.
+inline constexpr float kLeastLightCosine = 1e-3f;
+
 /// Transmittance from optical depth F: linear (a wall covers each ray once) or exponential (randomly placed surfaces). Error <= kTransmittanceMaxError.
 inline constexpr float kTransmittanceMaxError = 4e-7f;
 inline float transmittanceOf(float opticalDepth, const ConeSettings& settings)
@@ -53,7 +58,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
     const float voxelSize = world.opacity.base.grid.voxelSize;
     const float tap = step.tapWidth * voxelSize, segment = (step.end - step.begin) * voxelSize;
     const float range = lrsm.projection.depthRange(), zc = at.depth * range;  // metres beyond depthNear
-    const float window = (0.5f * segment + 1.5f * tap) / range;
+    const float window = (0.5f * segment + 0.5f * kKernelReachTaps * tap) / range;
     const Vec3 toLight = directionToLight(lrsm.projection, pWorld);
 
     Vec3 emission(0.0f);
@@ -79,7 +84,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const Vec3 normal = Vec3(normalSum[0], normalSum[1], normalSum[2]) / normalSum[3];
         const float nDotV = -glm::dot(normal, ray.direction);
         if (!(nDotV > 0.0f)) continue;
-        const float rate = nDotV / std::max(glm::dot(normal, toLight), 1e-3f);
+        const float rate = nDotV / std::max(glm::dot(normal, toLight), kLeastLightCosine);
 
         // The layer's depths (Eq. 10, 11), in metres, blurred by the tap's own width.
         const float warpedMean = depth[0] / depth[2];
@@ -125,7 +130,7 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
     ++counts.cones;
     for (std::size_t i = 0; i < schedule.steps.size(); ++i) {
         const MarchStep& step = schedule.steps[i];
-        if (step.begin - 3.0f * step.tapWidth > exit) break;
+        if (step.begin - kKernelReachTaps * step.tapWidth > exit) break;
         ++counts.steps;
         const Vec3 offset = ray.direction * step.middle;
 
@@ -151,9 +156,8 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         }
         wasOccupied = occupied;
 
-        // Done when even the delayed transmittance is spent.
-        const float settled = step.begin - 3.0f * step.tapWidth - 2.0f;
-        if (transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, i, settled), settings) < settings.march.transmittanceCutoff) break;
+        // Done when the transmittance is spent for every emitter to come.
+        if (transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, i, step.settled), settings) < settings.march.transmittanceCutoff) break;
     }
     result.opacity = 1.0f - transmittanceOf(depth, settings);
     return result;

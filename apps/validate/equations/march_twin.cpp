@@ -168,7 +168,7 @@ March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay
         for (const Lrsm& lrsm : world.lrsms)
             result.radiance += emission(world, lrsm, ray, DVec3(ray.originWorld) + offset * voxel, segments, depths, result.toJump);
 
-        const double left = transmittance(opticalDepth(segments, depths, s.begin - 3.0 * s.width - 2.0), settings);
+        const double left = transmittance(opticalDepth(segments, depths, double(step.settled)), settings);
         result.toJump = std::min(result.toJump, std::abs(left - double(settings.march.transmittanceCutoff)));
         if (left < double(settings.march.transmittanceCutoff)) break;
     }

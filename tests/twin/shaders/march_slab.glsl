@@ -78,8 +78,7 @@ vec4 march(vec3 originWorld, vec3 originVoxels, vec3 direction, vec3 nGeometric,
         if (occupied || wasOccupied)
             for (int k = 0; k < lightCount; ++k) radiance += emission(lights[k], originWorld + offset * voxelSize, direction, schedule, i);
         wasOccupied = occupied;
-        float settled = s.begin - 3.0 * s.tapWidth - 2.0;
-        if (transmittanceOf(opticalDepthAt(schedule, i, settled)) < transmittanceCutoff) break;
+        if (transmittanceOf(opticalDepthAt(schedule, i, s.settled)) < transmittanceCutoff) break;
     }
     return vec4(radiance, 1.0 - transmittanceOf(depth));
 }
