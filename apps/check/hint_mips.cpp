@@ -1,6 +1,6 @@
 // Mip levels and their rounding.
+#include "apps/capture/passes.h"
 #include "apps/check/hint_trial.h"
-#include "apps/check/rerun.h"
 #include "core/base/formats.h"
 
 #include <algorithm>
@@ -9,18 +9,6 @@
 namespace lrsm {
 
 namespace {
-
-/// A buffer's name with another level.
-std::string nameAtLevel(const std::string& name, int level)
-{
-    const std::size_t at = name.rfind("mip");
-    return name.substr(0, at + 3) + std::to_string(level);
-}
-
-bool isMip(const std::string& name)
-{
-    return name.find(".mip") != std::string::npos;
-}
 
 /// Texel of the level below (or of any finer level) that a child offset names, for an element of this level.
 class Family {
@@ -74,7 +62,7 @@ const Buffer* levelBeside(const HintTrial& trial, int by)
 {
     const std::string& name = trial.expected().name;
     const int level = levelOf(name) + by;
-    return isMip(name) && level >= 0 ? trial.inputs().find(nameAtLevel(name, level)) : nullptr;
+    return isMip(name) && level >= 0 ? trial.inputs().find(mipName(stemOf(name), level)) : nullptr;
 }
 
 void suspectPicking(HintTrial& trial, const Buffer& below)
@@ -167,9 +155,8 @@ std::string ownRounding(const HintTrial& trial)
 {
     const Buffer& expected = trial.expected();
     if (expected.encoding == Encoding::unorm) return "to nearest (UNORM: times 2^n - 1, plus 0.5, drop the fraction)";
-    const Settings& settings = trial.inputs().settings;
-    const HalfRounding rounding = expected.pass.starts_with("rsm") ? settings.rsm.halfRounding : settings.layers.halfRounding;
-    return rounding == HalfRounding::d3d ? "toward zero (half_rounding=d3d)" : "to nearest even (half_rounding=nearest_even)";
+    return halfRoundingOf(trial.inputs().settings, expected.pass) == HalfRounding::d3d ? "toward zero (half_rounding=d3d)"
+                                                                                       : "to nearest even (half_rounding=nearest_even)";
 }
 
 }  // namespace

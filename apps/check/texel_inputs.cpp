@@ -1,7 +1,7 @@
 #include "apps/check/texel_inputs.h"
 
+#include "apps/capture/passes.h"
 #include "apps/check/compare.h"
-#include "apps/check/rerun.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -33,27 +33,15 @@ class Inputs {
 
     void collect()
     {
-        const std::string& pass = buffer_.pass;
         const int level = levelOf(buffer_.name);
-        if (pass == "voxel mips")
+        const PassRow* row = findPassRow(buffer_.pass);
+        if (row && !row->sameTexel.empty()) texelOf(row->sameTexel);
+        if (buffer_.pass == "voxel mips")
             voxelChildren(level);
-        else if (pass.starts_with("lrsm") && level > 0)
-            layerChildren(level);
-        else if (pass.starts_with("lrsm"))
-            rsmBlock();
-        else if (pass.starts_with("rsm"))
-            texelOf({"rsm#.depth", "rsm#.radiance", "rsm#.normal"});
-        else if (pass == "gbuffer")
-            texelOf({"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "direct")
-            texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "cones")
+        else if (buffer_.pass == "cones")
             cones();
-        else if (pass == "filter")
-            texelOf({"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"});
-        else if (pass == "composite")
-            texelOf(
-                {"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse", "composite.specular"});
+        else if (isMip(buffer_.name))
+            level > 0 ? layerChildren(level) : rsmBlock();
     }
 
   private:
@@ -83,7 +71,6 @@ class Inputs {
 
     void cones()
     {
-        texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"});
         const std::size_t first = buffer_.axes[0] == "cone" ? 1 : 0, row = at_[first], column = at_[first + 1];
         const Buffer* rotation = capture_.find("tables.rotation");
         if (rotation && !rotation->bytes.empty())
@@ -100,7 +87,7 @@ class Inputs {
 
     void voxelChildren(int level)
     {
-        const std::string below = level > 1 ? "voxel.mip" + std::to_string(level - 1) : "voxel.bits";
+        const std::string below = level > 1 ? mipName("voxel", level - 1) : "voxel.bits";
         for (std::size_t child = 0; child < 8; ++child) add(below, {2 * at_[0] + (child >> 2), 2 * at_[1] + (child >> 1 & 1), 2 * at_[2] + (child & 1)});
         if (level > 1 && level <= 3 && buffer_.components.size() == 3)
             list.push_back({"of voxel.bits", "its value counts columns of the " + std::to_string(1 << level) + "^3 voxels from z " +
@@ -110,7 +97,7 @@ class Inputs {
 
     void layerChildren(int level)
     {
-        const std::string below = buffer_.name.substr(0, buffer_.name.rfind("mip") + 3) + std::to_string(level - 1);
+        const std::string below = mipName(stemOf(buffer_.name), level - 1);
         for (std::size_t child = 0; child < 4; ++child) add(below, {at_[0], 2 * at_[1] + (child >> 1), 2 * at_[2] + (child & 1)});
     }
 
