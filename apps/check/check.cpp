@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lrsm {
 
@@ -128,13 +127,6 @@ void addHints(const Capture& inputs, std::vector<CheckedBuffer>& buffers)
     }
 }
 
-std::string valueText(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
 }  // namespace
 
 std::string_view nameOf(Verdict verdict)
@@ -172,8 +164,8 @@ std::string CheckReport::summary() const
     const BufferComparison& c = wrong->comparison();
     std::string text = "first difference: pass \"" + golden.pass + "\", " + golden.name;
     if (c.first) {
-        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + valueText(c.first->golden) +
-                ", candidate " + valueText(c.first->candidate);
+        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + numberText(6, c.first->golden) +
+                ", candidate " + numberText(6, c.first->candidate);
         if (golden.tolerance.kind != Tolerance::Kind::exact && !std::isnan(c.first->size)) text += ", off by " + sizeText(golden, c.first->size);
     }
     text += " (tolerance " + toleranceText(golden.tolerance) + "); " + std::to_string(c.differing) + " of " + std::to_string(c.elements) + " differ, " +

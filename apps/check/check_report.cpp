@@ -4,7 +4,6 @@
 #include "core/report/table.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -15,9 +14,8 @@ using Json = nlohmann::ordered_json;
 
 std::string shortShare(std::size_t count, std::size_t of)
 {
-    char text[48];
-    std::snprintf(text, sizeof text, "%zu (%.3g %%)", count, of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0);
-    return count ? text : "0";
+    const double percent = of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0;
+    return count ? std::to_string(count) + " (" + numberText(3, percent) + " %)" : "0";
 }
 
 bool quiet(const CheckedBuffer& b)

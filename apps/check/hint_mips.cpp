@@ -97,35 +97,18 @@ void suspectPicking(HintTrial& trial, const Buffer& below)
     trial.suspect("level off by one: it holds a corner of " + below.name, [&](std::size_t i) { return decodedValue(below, family.corner(i)); });
 }
 
+constexpr double kTieSteps = 65536.0;
+
 /// How a value becomes a code.
 struct Quantiser {
     const char* text;
-    double (*code)(const Buffer& storage, double ordinal);
+    double (*code)(double ordinal);
 };
-double towardZero(const Buffer&, double o)
-{
-    return std::trunc(o);
-}
-double nearestUp(const Buffer&, double o)
-{
-    return std::floor(o + 0.5);
-}
-double nearestEven(const Buffer&, double o)
-{
-    const double low = std::floor(o), rest = o - low;
-    if (rest != 0.5) return rest < 0.5 ? low : low + 1.0;
-    return std::fmod(low, 2.0) == 0.0 ? low : low + 1.0;
-}
-double awayFromZero(const Buffer&, double o)
-{
-    return o < 0.0 ? std::floor(o) : std::ceil(o);
-}
-constexpr double kTieSteps = 65536.0;
 constexpr Quantiser kQuantisers[] = {
-    {"rounds to nearest even", nearestEven},
-    {"rounds toward zero (truncates)", towardZero},
-    {"rounds to nearest, halves up", nearestUp},
-    {"rounds away from zero (up)", awayFromZero},
+    {"rounds to nearest even", [](double o) { return o - std::remainder(o, 1.0); }},
+    {"rounds toward zero (truncates)", [](double o) { return std::trunc(o); }},
+    {"rounds to nearest, halves up", [](double o) { return std::floor(o + 0.5); }},
+    {"rounds away from zero (up)", [](double o) { return o < 0.0 ? std::floor(o) : std::ceil(o); }},
 };
 
 /// Wrong codes with each quantiser, given what is to be rounded; a suspicion when one leaves hardly any.
@@ -144,7 +127,7 @@ void suspectQuantisers(HintTrial& trial, const std::string& ours, const Wide& wi
         // Sums of codes are exact but for the division: ties must stay ties.
         const double code = ordinalOf(expected, decodedValue(candidate, i)), exact = std::round(ordinalOf(expected, value) * kTieSteps) / kTieSteps;
         before += code != ordinalOf(expected, decodedValue(expected, i)) ? 1 : 0;
-        for (std::size_t q = 0; q < left.size(); ++q) left[q] += std::abs(code - kQuantisers[q].code(expected, exact)) > 1e-3 ? 1 : 0;
+        for (std::size_t q = 0; q < left.size(); ++q) left[q] += std::abs(code - kQuantisers[q].code(exact)) > 1e-3 ? 1 : 0;
     }
     if (considered == 0) return;
     for (std::size_t q = 0; q < left.size(); ++q)

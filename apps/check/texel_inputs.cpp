@@ -4,18 +4,10 @@
 #include "apps/check/compare.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace lrsm {
 
 namespace {
-
-std::string shortest(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.7g", value);
-    return text;
-}
 
 /// Indices of the texel's first component, without the component axis: "row 3, column 7".
 std::string texelPlace(const Buffer& buffer, std::size_t element)
@@ -74,7 +66,7 @@ class Inputs {
         const std::size_t first = buffer_.axes[0] == "cone" ? 1 : 0, row = at_[first], column = at_[first + 1];
         const Buffer* rotation = capture_.find("tables.rotation");
         if (rotation && !rotation->bytes.empty())
-            list.push_back({"rotation of the pixel's cones (tables.rotation)", shortest(decodedValue(*rotation, (row & 3) * 4 + (column & 3)))});
+            list.push_back({"rotation of the pixel's cones (tables.rotation)", numberText(7, decodedValue(*rotation, (row & 3) * 4 + (column & 3)))});
         if (first == 1) {
             const Buffer* axes = capture_.find("tables.cone_directions");
             if (axes && rotation && axes->shape.size() == 3)
@@ -111,9 +103,9 @@ class Inputs {
         const std::vector<LayerRange> ranges = capture_.lights[light].storedRanges();
         if (at_[0] >= ranges.size()) return;
         const LayerRange& r = ranges[at_[0]];
-        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + shortest(r.depthMin) + ", " + shortest(r.depthMax) + "], <n.l> [" +
-                                                                        shortest(r.nDotLMin) + ", " + shortest(r.nDotLMax) + "], overlap " +
-                                                                        shortest(r.delta)});
+        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + numberText(7, r.depthMin) + ", " + numberText(7, r.depthMax) + "], <n.l> [" +
+                                                                        numberText(7, r.nDotLMin) + ", " + numberText(7, r.nDotLMax) + "], overlap " +
+                                                                        numberText(7, r.delta)});
     }
 
     const Capture& capture_;
@@ -131,7 +123,7 @@ std::string texelText(const Buffer& buffer, std::size_t element)
         if (!buffer.components.empty() && buffer.components[c].empty()) continue;
         text += text.empty() ? "" : ", ";
         if (!buffer.components.empty()) text += buffer.components[c] + " ";
-        text += shortest(decodedValue(buffer, first + c));
+        text += numberText(7, decodedValue(buffer, first + c));
     }
     return text;
 }
