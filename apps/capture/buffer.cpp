@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdlib>
 #include <cstring>
 
 namespace lrsm {
@@ -13,6 +14,7 @@ namespace lrsm {
 namespace {
 
 constexpr std::array<std::string_view, 3> kEncodings = {"number", "unorm", "bits"};
+constexpr std::string_view kMip = ".mip";
 constexpr std::array<std::string_view, 4> kToleranceKinds = {"exact", "ulp", "absolute", "relative"};
 
 template <class Enum, std::size_t n>
@@ -87,6 +89,26 @@ std::string extentsText(std::uint32_t layers, std::uint32_t depth, std::uint32_t
 }
 
 }  // namespace
+
+bool isMip(const std::string& name)
+{
+    return name.find(kMip) != std::string::npos;
+}
+
+int levelOf(const std::string& name)
+{
+    return isMip(name) ? std::atoi(name.c_str() + name.rfind(kMip) + kMip.size()) : 0;
+}
+
+std::string stemOf(const std::string& name)
+{
+    return name.substr(0, name.rfind(kMip));
+}
+
+std::string mipName(const std::string& stem, int level)
+{
+    return stem + std::string(kMip) + std::to_string(level);
+}
 
 std::string_view nameOf(Encoding encoding)
 {

@@ -68,6 +68,12 @@ struct Buffer {
     }
 };
 
+// Names of mips: "lrsm0.depth.mip3".
+bool isMip(const std::string& name);
+int levelOf(const std::string& name);         ///< 3; 0 for what is no mip. The order of the data flow within a pass.
+std::string stemOf(const std::string& name);  ///< "lrsm0.depth"; what is no mip: all of it
+std::string mipName(const std::string& stem, int level);
+
 std::string_view nameOf(Encoding encoding);
 Encoding encodingByName(std::string_view name, const std::string& place);
 std::string_view nameOf(Tolerance::Kind kind);

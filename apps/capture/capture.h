@@ -64,17 +64,4 @@ struct Capture {
     const Buffer& at(const std::string& name) const;
 };
 
-class OutputFolder;
-/// The files of a capture: manifest.json, one .npy a buffer, DDS where a buffer names one. Equal captures give equal bytes.
-void writeCapture(OutputFolder& folder, const Capture& capture);
-
-/// Bytes of the .npy and DDS that writeCapture will write; of the buffers only their description counts.
-std::size_t predictCaptureBytes(const std::vector<Buffer>& buffers);
-
-/// Strict: every buffer that the manifest names must be there, of its shape and type, and have its SHA-256. InputError "FILE: why; what to do".
-Capture readCapture(const std::string& folder);
-
-/// The manifest alone: buffers without bytes.
-Capture readManifest(const std::string& folder);
-
 }  // namespace lrsm

@@ -1,3 +1,5 @@
+#include "apps/capture/capture_files.h"
+#include "apps/capture/passes.h"
 #include "apps/capture/pictures.h"
 #include "apps/capture/record.h"
 #include "apps/common/commands.h"
@@ -7,7 +9,6 @@
 #include "apps/common/progress.h"
 #include "conetrace/lrsm/memory.h"
 #include "core/base/errors.h"
-#include "core/base/output_folder.h"
 #include "core/base/parallel.h"
 
 #include <filesystem>
@@ -105,9 +106,7 @@ Command addCapture(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
-    parser->add_option("--only", options->only, "passes whose buffers are kept: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")
-        ->delimiter(',')
-        ->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes whose buffers are kept: " + passNames())->delimiter(',')->allow_extra_args(false);
     parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");
     parser->add_flag("--no-pictures", options->noPictures, "leave out the EXR files and the contact sheet");
     return {parser, [options] { return run(*options); }};

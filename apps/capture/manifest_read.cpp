@@ -1,4 +1,5 @@
-#include "apps/capture/manifest.h"
+#include "apps/capture/manifest_read.h"
+
 #include "core/base/json_reader.h"
 #include "core/settings/settings_table.h"
 

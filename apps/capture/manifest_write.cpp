@@ -1,4 +1,4 @@
-#include "apps/capture/manifest.h"
+#include "apps/capture/manifest_write.h"
 
 #include "apps/capture/tables.h"
 #include "apps/common/describe.h"

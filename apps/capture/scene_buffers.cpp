@@ -1,7 +1,7 @@
 #include "apps/capture/scene_buffers.h"
 
-#include "apps/capture/convert.h"
 #include "apps/capture/fill.h"
+#include "apps/capture/tolerances.h"
 #include "core/scene/brdf.h"
 
 namespace lrsm {
@@ -11,6 +11,12 @@ namespace {
 enum Stream : std::uint32_t { hasUv0 = 1, hasUv1 = 2, hasTangents = 4, hasColors = 8 };
 
 constexpr std::size_t kMeshColumns = 6;
+
+std::uint32_t streamsOf(const Mesh& mesh)
+{
+    return (mesh.uv0.empty() ? 0u : hasUv0) | (mesh.uv1.empty() ? 0u : hasUv1) | (mesh.tangents.empty() ? 0u : hasTangents) |
+           (mesh.colors.empty() ? 0u : hasColors);
+}
 
 bool textured(const Material& m)
 {
@@ -44,18 +50,33 @@ std::vector<float> materialRows(const Scene& scene)
 
 }  // namespace
 
-SceneCounts countScene(const Scene& scene)
+void describeScene(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
-    SceneCounts n;
-    for (const Mesh& mesh : scene.meshes) {
-        n.vertices += mesh.positions.size();
-        n.triangles += mesh.triangles.size();
-        n.uv0 |= !mesh.uv0.empty();
-        n.uv1 |= !mesh.uv1.empty();
-        n.tangents |= !mesh.tangents.empty();
-        n.colors |= !mesh.colors.empty();
+    std::size_t vertices = 0, triangles = 0;
+    std::uint32_t streams = 0;
+    for (const Mesh& mesh : frame.scene.meshes) {
+        vertices += mesh.positions.size();
+        triangles += mesh.triangles.size();
+        streams |= streamsOf(mesh);
     }
-    return n;
+    const auto list = [&](const std::string& name, Dtype dtype, std::size_t count, const Catalogue::Names& components, const std::string& item,
+                          const Catalogue::Text& text) { out.add("scene." + name, dtype, {count}, {item}, components, text, tolerances::kGiven); };
+    list("positions", Dtype::f4, vertices, {"x", "y", "z"}, "vertex", {"of all meshes, one after the other", kWorldSpace, "m"});
+    list("normals", Dtype::f4, vertices, {"x", "y", "z"}, "vertex", {"unit", kWorldSpace, ""});
+    if (streams & hasUv0) list("uv0", Dtype::f4, vertices, {"u", "v"}, "vertex", {"first texture coordinates; 0 for meshes without", "texture", ""});
+    if (streams & hasUv1) list("uv1", Dtype::f4, vertices, {"u", "v"}, "vertex", {"second texture coordinates; 0 for meshes without", "texture", ""});
+    if (streams & hasTangents)
+        list("tangents", Dtype::f4, vertices, {"x", "y", "z", "sign"}, "vertex",
+             {"bitangent = sign cross(normal, tangent); 0 for meshes without", kWorldSpace, ""});
+    if (streams & hasColors)
+        list("colors", Dtype::f4, vertices, {"r", "g", "b", "a"}, "vertex", {"multiply the base colour; 0 for meshes without", "linear", ""});
+    list("triangles", Dtype::u4, triangles, {"a", "b", "c"}, "triangle", {"vertices, counter-clockwise seen from the front; submitted in this order", "", ""});
+    list("triangle_mesh", Dtype::u4, triangles, {}, "triangle", {"mesh; object id minus 1", "", ""});
+    list("meshes", Dtype::u4, frame.scene.meshes.size(), {"material", "first_vertex", "vertices", "first_triangle", "triangles", "streams"}, "mesh",
+         {"streams: 1 uv0, 2 uv1, 4 tangents, 8 colors", "", ""});
+    list("materials", Dtype::f4, frame.scene.materials.size(),
+         {"albedo.r", "albedo.g", "albedo.b", "f0.r", "f0.g", "f0.b", "roughness", "double_sided", "textured"}, "material",
+         {"as without textures and vertex colours; f0 is 0 where there is no specular part", "linear", ""});
 }
 
 bool withoutTextures(const Scene& scene)
@@ -72,9 +93,7 @@ void toBuffers(const Scene& scene, std::vector<Buffer>& buffers)
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
         const auto vertices = static_cast<std::uint32_t>(mesh.positions.size()), count = static_cast<std::uint32_t>(mesh.triangles.size());
-        const std::uint32_t streams = (mesh.uv0.empty() ? 0u : hasUv0) | (mesh.uv1.empty() ? 0u : hasUv1) | (mesh.tangents.empty() ? 0u : hasTangents) |
-                                      (mesh.colors.empty() ? 0u : hasColors);
-        for (const std::uint32_t value : {static_cast<std::uint32_t>(mesh.material), firstVertex, vertices, firstTriangle, count, streams})
+        for (const std::uint32_t value : {static_cast<std::uint32_t>(mesh.material), firstVertex, vertices, firstTriangle, count, streamsOf(mesh)})
             meshes.push_back(value);
         for (const auto& triangle : mesh.triangles) {
             for (const std::uint32_t corner : triangle) triangles.push_back(firstVertex + corner);

@@ -1,5 +1,6 @@
 #include "apps/capture/tables.h"
 
+#include "apps/capture/tolerances.h"
 #include "conetrace/frame/specular_albedo.h"
 
 #include <cstring>
@@ -63,6 +64,22 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
         tables.specularAlbedo =
             tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());
     return tables;
+}
+
+void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    const CaptureTables tables = makeTables(frame.needs, frame.settings);
+    const auto rows = [&](const Table& t, const Catalogue::Names& axes, const Catalogue::Names& components, const Catalogue::Text& text) {
+        if (!t.shape.empty()) out.add(t.name, t.dtype, {t.shape.begin(), t.shape.begin() + std::ssize(axes)}, axes, components, text, tolerances::kGiven);
+    };
+    rows(tables.directions, {"rotation", "cone"}, {"x", "y", "z"}, {"axes of the diffuse cones, unit", "tangent frame, z along the normal", ""});
+    rows(tables.rotation, {"row", "column"}, {}, {"rotation of the pixel at (row & 3, column & 3)", "", ""});
+    rows(tables.schedules, {"schedule", "step"}, {"middle", "begin", "end", "diameter", "level", "tap_width", "reads_voxels", "settled"},
+         {"where a cone takes its samples; rows of 0 after the last step", "along the cone from its apex", "base voxels"});
+    rows(tables.steps, {"schedule"}, {}, {"steps of each schedule", "", ""});
+    rows(tables.gaussian, {"entry"}, {}, {"Phi over [-5, 5], linear between entries", "", ""});
+    rows(tables.specularAlbedo, {"roughness", "root_n_dot_v"}, {"scale", "bias"},
+         {"directional albedo of the lobe = F0 scale + bias; over roughness and sqrt(n.v), both 0 .. 1", "", ""});
 }
 
 }  // namespace lrsm

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/capture/npy.h"
+#include "apps/capture/catalogue.h"
 #include "conetrace/frame/gather_plan.h"
 #include "lrsm/gaussian_visibility.h"
 
@@ -22,5 +22,7 @@ struct CaptureTables {
     std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo}; }
 };
 CaptureTables makeTables(const Requirements& needs, const Settings& settings);
+
+void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 
 }  // namespace lrsm

@@ -36,15 +36,16 @@ Tolerance relative(double value, double outliers, std::string reason)
 
 }  // namespace
 
-Tolerance given()
-{
-    return exact(0.0, "an input: not computed");
-}
-
-Tolerance voxels()
-{
-    return exact(0.01, "a hardware rasterizer snaps to 1/256 pixel, we to 1/4096 voxel: a voxel whose centre is that near an edge may flip");
-}
+const Tolerance kGiven = exact(0.0, "an input: not computed");
+const Tolerance kVoxels = exact(0.01, "a hardware rasterizer snaps to 1/256 pixel, we to 1/4096 voxel: a voxel whose centre is that near an edge may flip");
+const Tolerance kSurface = absolute(2e-3, kEdges, "interpolation, and 8 bits of sampler fraction in textures; silhouettes flip");
+const Tolerance kObjectId = exact(kEdges, "silhouettes flip where snapping differs");
+const Tolerance kDirect = relative(1e-3, kEdges, "float32 in another order; a shadow's edge flips where its depth comparison is a tie");
+const Tolerance kCones = relative(2e-2, 0.01, "sampler fractions of 8 bits, log2 to a few ULP; a cone that ends one step earlier or later is an outlier");
+const Tolerance kConeOpacity = absolute(1e-2, 0.01, "as the cones' radiance");
+const Tolerance kFilter = relative(1e-4, kEdges, "the order of 25 additions; a neighbour at the limit of \"same surface\" is an outlier");
+const Tolerance kProduct = relative(1e-5, 0.0, "float32 in another order");
+const Tolerance kSpecularPart = relative(2e-3, 0.0, "table lookup by a sampler's 8-bit fractions");
 
 Tolerance voxelMip(bool unorm)
 {
@@ -95,46 +96,6 @@ Tolerance surfaceNormal(int height)
 {
     return absolute(2e-3 + 16.0 * snapping(height), kEdges,
                     "8 bits of sampler fraction in normal maps; 1/256 pixel of snapping on curved surfaces; silhouettes flip");
-}
-
-Tolerance surface()
-{
-    return absolute(2e-3, kEdges, "interpolation, and 8 bits of sampler fraction in textures; silhouettes flip");
-}
-
-Tolerance objectId()
-{
-    return exact(kEdges, "silhouettes flip where snapping differs");
-}
-
-Tolerance direct()
-{
-    return relative(1e-3, kEdges, "float32 in another order; a shadow's edge flips where its depth comparison is a tie");
-}
-
-Tolerance cones()
-{
-    return relative(2e-2, 0.01, "sampler fractions of 8 bits, log2 to a few ULP; a cone that ends one step earlier or later is an outlier");
-}
-
-Tolerance coneOpacity()
-{
-    return absolute(1e-2, 0.01, "as the cones' radiance");
-}
-
-Tolerance filter()
-{
-    return relative(1e-4, kEdges, "the order of 25 additions; a neighbour at the limit of \"same surface\" is an outlier");
-}
-
-Tolerance product()
-{
-    return relative(1e-5, 0.0, "float32 in another order");
-}
-
-Tolerance specularPart()
-{
-    return relative(2e-3, 0.0, "table lookup by a sampler's 8-bit fractions");
 }
 
 void setFloor(Buffer& buffer)

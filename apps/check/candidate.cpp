@@ -1,5 +1,8 @@
 #include "apps/check/candidate.h"
 
+#include "apps/capture/capture_files.h"
+#include "apps/capture/fill.h"
+#include "apps/capture/passes.h"
 #include "apps/check/candidate_map.h"
 #include "apps/check/compare.h"
 #include "core/base/errors.h"
@@ -21,11 +24,7 @@ namespace fs = std::filesystem;
 
 GivenArray fromNpy(NpyArray array)
 {
-    GivenArray given;
-    given.dtype = array.dtype;
-    given.shape = std::move(array.shape);
-    given.bytes = std::move(array.bytes);
-    return given;
+    return {.dtype = array.dtype, .encoding = Encoding::number, .encodingKnown = false, .shape = std::move(array.shape), .bytes = std::move(array.bytes)};
 }
 
 struct ChannelType {
@@ -70,17 +69,6 @@ GivenArray fromLayer(const LayeredImage& image, const ImageLayer& layer)
     given.bytes.resize(layer.values.size() * sizeof(float));
     if (!layer.values.empty()) std::memcpy(given.bytes.data(), layer.values.data(), given.bytes.size());
     return given;
-}
-
-struct MipName {
-    std::string stem;  ///< "lrsm0.radiance"
-    int mip = -1;
-};
-MipName splitMip(const std::string& name)
-{
-    const std::size_t at = name.rfind(".mip");
-    if (at == std::string::npos) return {name, -1};
-    return {name.substr(0, at), std::atoi(name.c_str() + at + 4)};
 }
 
 class CandidateReader {
@@ -131,10 +119,7 @@ class CandidateReader {
 
     CandidateBuffer finish(const Buffer& golden, const GivenArray& array, const Arrangement& how, const std::string& file) const
     {
-        const bool map = golden.pass.starts_with("rsm");
-        const HalfRounding rounding = map ? golden_.settings.rsm.halfRounding : golden_.settings.layers.halfRounding;
-        const std::string place = (fs::path(folder_) / file).string();
-        Arranged arranged = arrange(golden, array, how, rounding, place);
+        Arranged arranged = arrange(golden, array, how, halfRoundingOf(golden_.settings, golden.pass), (fs::path(folder_) / file).string());
         CandidateBuffer found;
         found.buffer = golden;
         found.buffer.bytes = std::move(arranged.bytes);
@@ -150,7 +135,7 @@ class CandidateReader {
         if (extension == ".npy") return finish(golden, fromNpy(readNpy(path(entry.file))), entry.how, entry.file);
         if (extension == ".dds") {
             const DdsTexture& texture = dds(entry.file);
-            const int own = golden.dds ? static_cast<int>(golden.dds->mip) : std::max(splitMip(golden.name).mip, 0);
+            const int own = golden.dds ? static_cast<int>(golden.dds->mip) : levelOf(golden.name);
             const int mip = entry.mip >= 0 ? entry.mip : own;
             if (mip >= static_cast<int>(texture.mips))
                 throw InputError(path(entry.file), "has " + std::to_string(texture.mips) + " mips; " + golden.name + " is to be mip " + std::to_string(mip));
@@ -203,9 +188,8 @@ class CandidateReader {
     {
         std::vector<std::pair<std::string, std::uint32_t>> places;
         if (golden.dds) places.emplace_back(golden.dds->file, golden.dds->mip);
-        const MipName name = splitMip(golden.name);
-        if (!golden.dds) places.emplace_back(name.stem + ".dds", std::uint32_t(std::max(name.mip, 0)));
-        if (name.mip >= 0) places.emplace_back(golden.name + ".dds", 0u);
+        if (!golden.dds) places.emplace_back(stemOf(golden.name) + ".dds", static_cast<std::uint32_t>(levelOf(golden.name)));
+        if (isMip(golden.name)) places.emplace_back(golden.name + ".dds", 0u);
         return places;
     }
 
@@ -272,12 +256,6 @@ void compareManifests(const std::string& folder, const Capture& golden, std::vec
         notes.push_back("its manifest has another setting: " + d.key + "=" + d.b + ", golden " + d.a);
 }
 
-Buffer* findIn(std::vector<Buffer>& buffers, const std::string& name)
-{
-    const auto found = std::find_if(buffers.begin(), buffers.end(), [&](const Buffer& b) { return b.name == name; });
-    return found == buffers.end() ? nullptr : &*found;
-}
-
 /// Bits of one packing into the other.
 void repack(const Buffer& from, Buffer& to)
 {
@@ -309,10 +287,7 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
     candidate.folder = folder;
     compareManifests(folder, golden, candidate.notes);
     for (const Buffer& buffer : golden.buffers) {
-        const bool wanted = options.passes.empty() || std::any_of(options.passes.begin(), options.passes.end(), [&](const std::string& pass) {
-                                return buffer.pass == pass || buffer.pass.starts_with(pass + " ");
-                            });
-        if (!wanted) continue;
+        if (!isAskedFor(options.passes, buffer.pass)) continue;
         if (std::optional<CandidateBuffer> found = reader.read(buffer)) candidate.buffers.push_back(std::move(*found));
     }
     if (options.passes.empty())
@@ -323,9 +298,9 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
 Capture layOver(const Capture& golden, const Candidate& candidate)
 {
     Capture mixed = golden;
-    for (const CandidateBuffer& from : candidate.buffers) findIn(mixed.buffers, from.buffer.name)->bytes = from.buffer.bytes;
-    Buffer* rows = findIn(mixed.buffers, "voxel.bits");
-    Buffer* bricks = findIn(mixed.buffers, "voxel.bricks");
+    for (const CandidateBuffer& from : candidate.buffers) findBuffer(mixed.buffers, from.buffer.name)->bytes = from.buffer.bytes;
+    Buffer* rows = findBuffer(mixed.buffers, "voxel.bits");
+    Buffer* bricks = findBuffer(mixed.buffers, "voxel.bricks");
     if (rows && bricks) {
         if (candidate.find("voxel.bits"))
             repack(*rows, *bricks);

@@ -1,31 +1,20 @@
 #include "apps/check/check.h"
 
+#include "apps/capture/passes.h"
 #include "apps/check/hints.h"
-#include "apps/check/rerun.h"
 #include "core/base/errors.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lrsm {
 
 namespace {
 
-bool isGiven(const Buffer& buffer)
-{
-    return buffer.pass == "scene" || buffer.pass == "tables";
-}
-
 std::size_t passIndex(const Capture& golden, const std::string& pass)
 {
     const auto found = std::find_if(golden.passes.begin(), golden.passes.end(), [&](const CapturedPass& p) { return p.name == pass; });
     return static_cast<std::size_t>(found - golden.passes.begin()) + 1;
-}
-
-bool chosen(const std::vector<std::string>& passes, const std::string& pass)
-{
-    return passes.empty() || std::any_of(passes.begin(), passes.end(), [&](const std::string& p) { return pass == p || pass.starts_with(p + " "); });
 }
 
 void refuseUnknownPasses(const Capture& golden, const std::vector<std::string>& passes)
@@ -35,7 +24,7 @@ void refuseUnknownPasses(const Capture& golden, const std::vector<std::string>& 
         bool found = false;
         std::string last;
         for (const Buffer& buffer : golden.buffers) {
-            found = found || chosen({asked}, buffer.pass);
+            found = found || isAskedFor({asked}, buffer.pass);
             if (buffer.pass != last) known += (known.empty() ? "" : ", ") + buffer.pass;
             last = buffer.pass;
         }
@@ -48,15 +37,15 @@ std::vector<CheckedBuffer> inOrder(const Capture& golden, const Candidate& candi
 {
     std::vector<CheckedBuffer> buffers;
     for (const Buffer& buffer : golden.buffers) {
-        if (!chosen(options.passes, buffer.pass)) continue;
+        if (!isAskedFor(options.passes, buffer.pass)) continue;
         CheckedBuffer checked;
         checked.golden = &buffer;
         checked.candidate = candidate.find(buffer.name);
-        if (!checked.candidate && isGiven(buffer)) continue;
+        if (!checked.candidate && isGiven(buffer.pass)) continue;
         buffers.push_back(std::move(checked));
     }
     const auto place = [&](const CheckedBuffer& b) {
-        return std::pair(isGiven(*b.golden) ? std::size_t(0) : passIndex(golden, b.golden->pass), levelOf(b.golden->name));
+        return std::pair(isGiven(b.golden->pass) ? std::size_t(0) : passIndex(golden, b.golden->pass), levelOf(b.golden->name));
     };
     std::stable_sort(buffers.begin(), buffers.end(), [&](const CheckedBuffer& a, const CheckedBuffer& b) { return place(a) < place(b); });
     return buffers;
@@ -67,7 +56,7 @@ std::string inputsTakenFromGolden(const Capture& golden, const Candidate& candid
 {
     std::string text;
     for (const std::string& input : pass.inputs) {
-        if (input == "scene" || input == "tables") continue;
+        if (isGiven(input)) continue;
         std::size_t has = 0, of = 0;
         for (const Buffer& buffer : golden.buffers) {
             if (buffer.pass != input) continue;
@@ -84,7 +73,7 @@ bool hasInputs(const Capture& golden, const Candidate& candidate, const Captured
 {
     return std::any_of(golden.buffers.begin(), golden.buffers.end(), [&](const Buffer& buffer) {
         const bool read = buffer.pass == pass.name || std::find(pass.inputs.begin(), pass.inputs.end(), buffer.pass) != pass.inputs.end();
-        return read && !isGiven(buffer) && candidate.find(buffer.name);
+        return read && !isGiven(buffer.pass) && candidate.find(buffer.name);
     });
 }
 
@@ -114,7 +103,9 @@ void rerunPasses(const Capture& golden, const Candidate& candidate, const Captur
         if (options.progress) options.progress(pass.name, static_cast<double>(done++) / static_cast<double>(golden.passes.size()));
         const auto ours = [&](const CheckedBuffer& b) { return b.golden->pass == pass.name && b.candidate; };
         // A pass that reads the scene alone has the same inputs here and there: the golden is what it makes of them.
-        if (readsSceneAlone(pass) || std::none_of(buffers.begin(), buffers.end(), ours) || !hasInputs(golden, candidate, pass)) continue;
+        if (std::all_of(pass.inputs.begin(), pass.inputs.end(), isGiven) || std::none_of(buffers.begin(), buffers.end(), ours) ||
+            !hasInputs(golden, candidate, pass))
+            continue;
         const Rerun rerun = rerunPass(mixed, pass.name);
         const std::string fromGolden = inputsTakenFromGolden(golden, candidate, pass);
         for (CheckedBuffer& checked : buffers)
@@ -134,13 +125,6 @@ void addHints(const Capture& inputs, std::vector<CheckedBuffer>& buffers)
         checked.where = whatTheyShare(question);
         checked.hints = findHints(question);
     }
-}
-
-std::string valueText(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
 }
 
 }  // namespace
@@ -180,8 +164,8 @@ std::string CheckReport::summary() const
     const BufferComparison& c = wrong->comparison();
     std::string text = "first difference: pass \"" + golden.pass + "\", " + golden.name;
     if (c.first) {
-        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + valueText(c.first->golden) +
-                ", candidate " + valueText(c.first->candidate);
+        text += ", " + placeText(golden, c.first->element) + ": " + (wrong->againstRerun ? "expected " : "golden ") + numberText(6, c.first->golden) +
+                ", candidate " + numberText(6, c.first->candidate);
         if (golden.tolerance.kind != Tolerance::Kind::exact && !std::isnan(c.first->size)) text += ", off by " + sizeText(golden, c.first->size);
     }
     text += " (tolerance " + toleranceText(golden.tolerance) + "); " + std::to_string(c.differing) + " of " + std::to_string(c.elements) + " differ, " +

@@ -1,6 +1,6 @@
-// The folder of `lrsm check`: what was expected, what came, and the difference, as arrays and pictures, and the page that shows them.
+#include "apps/check/check_bundle.h"
+
 #include "apps/check/check_report.h"
-#include "apps/check/rerun.h"
 #include "apps/check/texel_inputs.h"
 #include "apps/common/describe.h"
 #include "core/imageio/display.h"
@@ -91,7 +91,7 @@ Image<Rgb8> magnified(const Image<Rgb8>& picture)
 }
 
 /// Largest difference of a texel's components, black where there is none.
-Image<Rgb8> differencePicture(const Buffer& buffer, const Image<Vec3>& expected, const Image<Vec3>& actual)
+Image<Rgb8> differencePicture(const Image<Vec3>& expected, const Image<Vec3>& actual)
 {
     Image<float> size(expected.width, expected.height);
     float largest = 0.0f;
@@ -100,7 +100,6 @@ Image<Rgb8> differencePicture(const Buffer& buffer, const Image<Vec3>& expected,
         size.texels[i] = std::max(std::abs(d.x), std::max(std::abs(d.y), std::abs(d.z)));
         if (std::isfinite(size.texels[i])) largest = std::max(largest, size.texels[i]);
     }
-    (void)buffer;
     return falseColor(size, 0.0f, largest > 0.0f ? largest : 1.0f);
 }
 
@@ -130,7 +129,7 @@ std::vector<ReportPicture> writeBuffer(OutputFolder& folder, const CheckedBuffer
     const Image<Vec3> came = sample(expected, slice, [&](std::size_t i) { return decodedValue(b.candidate->buffer, i); });
     std::vector<ReportPicture> pictures = {{"expected" + slice.title, encodePng(magnified(shown(expected, wanted, wanted)))},
                                            {"actual" + slice.title, encodePng(magnified(shown(expected, came, wanted)))},
-                                           {"difference" + slice.title, encodePng(magnified(differencePicture(expected, wanted, came)))}};
+                                           {"difference" + slice.title, encodePng(magnified(differencePicture(wanted, came)))}};
     for (const ReportPicture& picture : pictures) folder.write(expected.name + "." + picture.title.substr(0, picture.title.find(',')) + ".png", picture.png);
     return pictures;
 }

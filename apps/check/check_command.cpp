@@ -1,5 +1,8 @@
+#include "apps/capture/capture_files.h"
+#include "apps/capture/passes.h"
 #include "apps/capture/pictures.h"
 #include "apps/check/bless.h"
+#include "apps/check/check_bundle.h"
 #include "apps/check/check_report.h"
 #include "apps/check/texel_inputs.h"
 #include "apps/common/commands.h"
@@ -9,7 +12,6 @@
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 
-#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -52,13 +54,6 @@ int bless(const CheckArguments& options)
     return 0;
 }
 
-/// The pass names of a command line: "voxel-mips" is "voxel mips".
-std::vector<std::string> passNames(std::vector<std::string> names)
-{
-    for (std::string& name : names) std::replace(name.begin(), name.end(), '-', ' ');
-    return names;
-}
-
 /// What the wrong texel is made from, on the terminal too.
 void printInputs(const CheckReport& report, const Capture& inputs)
 {
@@ -99,7 +94,7 @@ int runCheck(const CheckArguments& options)
     if (options.exact) demandBits(golden);
     CheckOptions chosen;
     chosen.fromGolden = options.fromGolden;
-    chosen.passes = passNames(options.only);
+    chosen.passes = options.only;
     chosen.hints = !options.noHints;
     chosen.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     // With --from-golden a pass that is not asked for still is the input of one that is.
@@ -140,9 +135,7 @@ Command addCheck(CLI::App& program)
     parser->add_option("--map", options->map, "JSON that says where the candidate's buffers are, and how they are stored");
     parser->add_flag("--from-golden", options->fromGolden, "judge each pass by what ours makes of the candidate's own inputs");
     parser->add_flag("--exact", options->exact, "every buffer must have the golden's very bits, whatever its tolerance: for captures by this program");
-    parser->add_option("--only", options->only, "passes to compare: voxelize, voxel-mips, rsm, lrsm, gbuffer, direct, cones, filter, composite")
-        ->delimiter(',')
-        ->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes to compare: " + passNames())->delimiter(',')->allow_extra_args(false);
     parser->add_option("--junit", options->junit, "file for a JUnit report");
     parser->add_flag("--no-hints", options->noHints, "compare only: do not look for what the error may be");
     parser->add_flag("--bless", options->bless, "make the candidate, a whole capture of the same frame, the golden");

@@ -4,7 +4,6 @@
 #include "core/report/table.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -15,21 +14,8 @@ using Json = nlohmann::ordered_json;
 
 std::string shortShare(std::size_t count, std::size_t of)
 {
-    char text[48];
-    std::snprintf(text, sizeof text, "%zu (%.3g %%)", count, of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0);
-    return count ? text : "0";
-}
-
-/// "lrsm0.depth.mip3" -> "lrsm0.depth.mip"; empty for what is no mip.
-std::string mipStem(const std::string& name)
-{
-    const std::size_t at = name.rfind(".mip");
-    return at == std::string::npos ? std::string() : name.substr(0, at + 4);
-}
-
-std::string mipNumber(const std::string& name)
-{
-    return name.substr(name.rfind("mip") + 3);
+    const double percent = of ? 100.0 * static_cast<double>(count) / static_cast<double>(of) : 0.0;
+    return count ? std::to_string(count) + " (" + numberText(3, percent) + " %)" : "0";
 }
 
 bool quiet(const CheckedBuffer& b)
@@ -40,8 +26,7 @@ bool quiet(const CheckedBuffer& b)
 /// Mips of one texture that say the same.
 bool joins(const CheckedBuffer& a, const CheckedBuffer& b)
 {
-    return quiet(a) && quiet(b) && a.verdict == b.verdict && a.note == b.note && !mipStem(a.golden->name).empty() &&
-           mipStem(a.golden->name) == mipStem(b.golden->name);
+    return quiet(a) && quiet(b) && a.verdict == b.verdict && a.note == b.note && isMip(a.golden->name) && stemOf(a.golden->name) == stemOf(b.golden->name);
 }
 
 std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
@@ -72,7 +57,7 @@ ReportTable tableOf(const CheckReport& report)
         for (std::size_t j = i + 1; j < report.buffers.size(); ++j)
             if (!done[j] && joins(first, report.buffers[j])) {
                 done[j] = true;
-                last = mipNumber(report.buffers[j].golden->name);
+                last = std::to_string(levelOf(report.buffers[j].golden->name));
                 elements += first.verdict == Verdict::missing ? 0 : report.buffers[j].comparison().elements;
             }
         std::vector<std::string> row = rowOf(first, last.empty() ? name : name + "-" + last);

@@ -124,9 +124,7 @@ std::string share(std::size_t count, std::size_t of)
 
 std::string percent(double fraction)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
-    return text;
+    return numberText(3, 100.0 * fraction) + " %";
 }
 
 void judge(BufferComparison& c, const Tolerance& tolerance)
@@ -251,27 +249,28 @@ BufferComparison compareBuffers(const Buffer& golden, const Buffer& candidate, s
     return all;
 }
 
+std::string numberText(int digits, double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
 std::string sizeText(const Buffer& golden, double size)
 {
-    char text[48];
     switch (golden.tolerance.kind) {
-    case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", size); break;
-    case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %%", 100.0 * size); break;
-    default: std::snprintf(text, sizeof text, "%.3g", size); break;
+    case Tolerance::Kind::ulp: return numberText(4, size) + " ULP";
+    case Tolerance::Kind::relative: return percent(size);
+    default: return numberText(3, size);
     }
-    return text;
 }
 
 std::string toleranceText(const Tolerance& tolerance)
 {
-    char text[96];
-    switch (tolerance.kind) {
-    case Tolerance::Kind::exact: std::snprintf(text, sizeof text, "exact"); break;
-    case Tolerance::Kind::ulp: std::snprintf(text, sizeof text, "%.4g ULP", tolerance.value); break;
-    case Tolerance::Kind::absolute: std::snprintf(text, sizeof text, "%.3g", tolerance.value); break;
-    case Tolerance::Kind::relative: std::snprintf(text, sizeof text, "%.3g %% of max(|golden|, %.3g)", 100.0 * tolerance.value, tolerance.floor); break;
-    }
-    std::string whole = text;
+    std::string whole = "exact";
+    if (tolerance.kind == Tolerance::Kind::ulp) whole = numberText(4, tolerance.value) + " ULP";
+    if (tolerance.kind == Tolerance::Kind::absolute) whole = numberText(3, tolerance.value);
+    if (tolerance.kind == Tolerance::Kind::relative) whole = percent(tolerance.value) + " of max(|golden|, " + numberText(3, tolerance.floor) + ")";
     if (tolerance.outliers > 0.0) whole += ", but for " + percent(tolerance.outliers);
     if (tolerance.differing < 1.0) whole += ", at most " + percent(tolerance.differing) + " differing";
     return whole;

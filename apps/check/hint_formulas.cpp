@@ -1,11 +1,10 @@
 // Terms that a pass may have forgotten, or taken twice.
-#include "apps/capture/convert.h"
+#include "apps/capture/passes.h"
 #include "apps/check/hint_trial.h"
-#include "apps/check/rerun.h"
-#include "core/base/errors.h"
 #include "core/scene/camera.h"
 
 #include <algorithm>
+#include <map>
 
 namespace lrsm {
 
@@ -176,15 +175,10 @@ void suspectShading(HintTrial& trial)
                   [&](std::size_t i) { return trial.expectedAt(i) * decodedValue(*albedo, i) / double(kPi); });
 
     if (b.name != "composite.combined") return;
-    const Buffer* parts[] = {sibling(trial, "direct.radiance"), sibling(trial, "composite.diffuse"), sibling(trial, "composite.specular")};
-    const char* names[] = {"direct.radiance", "composite.diffuse", "composite.specular"};
-    for (int left = 0; left < 3; ++left)
-        if (parts[left])
-            trial.suspect(std::string(names[left]) + " is not in the sum", [&](std::size_t i) { return trial.expectedAt(i) - decodedValue(*parts[left], i); });
-    for (int twice = 0; twice < 3; ++twice)
-        if (parts[twice])
-            trial.suspect(std::string(names[twice]) + " is in the sum twice",
-                          [&](std::size_t i) { return trial.expectedAt(i) + decodedValue(*parts[twice], i); });
+    for (const auto& [sign, text] : {std::pair(-1.0, " is not in the sum"), std::pair(1.0, " is in the sum twice")})
+        for (const char* name : {"direct.radiance", "composite.diffuse", "composite.specular"})
+            if (const Buffer* part = sibling(trial, name))
+                trial.suspect(std::string(name) + text, [&, sign = sign](std::size_t i) { return trial.expectedAt(i) + sign * decodedValue(*part, i); });
 }
 
 /// The irradiance filter with one of its rules left out.
@@ -294,15 +288,13 @@ void suspectGather(HintTrial& trial)
 
 void suspectFormulas(HintTrial& trial)
 {
-    const std::string& pass = trial.expected().pass;
-    if (pass.starts_with("lrsm")) suspectLrsm(trial);
-    if (pass.starts_with("lrsm")) suspectBlock(trial);
-    if (pass.starts_with("lrsm")) suspectLayers(trial);
-    if (pass == "filter") suspectFilter(trial);
-    if (pass.starts_with("rsm")) suspectRsm(trial);
-    if (pass == "gbuffer") suspectGBuffer(trial);
-    if (pass == "direct" || pass == "composite" || pass == "cones" || pass == "filter") suspectShading(trial);
-    if (pass == "cones") suspectGather(trial);
+    static const std::map<std::string, std::vector<void (*)(HintTrial&)>> families = {
+        {"rsm", {suspectRsm}},           {"lrsm", {suspectLrsm, suspectBlock, suspectLayers}}, {"gbuffer", {suspectGBuffer}},
+        {"direct", {suspectShading}},    {"cones", {suspectShading, suspectGather}},           {"filter", {suspectFilter, suspectShading}},
+        {"composite", {suspectShading}},
+    };
+    if (const auto own = families.find(passFamily(trial.expected().pass)); own != families.end())
+        for (const auto& suspect : own->second) suspect(trial);
 }
 
 }  // namespace lrsm

@@ -127,63 +127,63 @@ class LayoutSuspicions {
                            [&](std::size_t i) { return i / plain_.strides[axis] % plain_.extents[axis] == at; });
     }
 
+    /// What stands where another index along the axis is expected.
+    struct Exchange {
+        Rearrangement r;
+        std::string moved;
+        std::size_t count = 0;
+        bool pair = false;  ///< two that hold each other:
+        std::size_t low = 0, high = 0;
+    };
+    template <class Wrong, class Source, class Text>
+    Exchange exchangesOn(std::size_t axis, const Wrong& wrong, const Source& source, const Text& text) const
+    {
+        Exchange found{.r = plain_, .moved = {}};
+        std::vector<std::size_t>& index = found.r.index[axis];
+        std::size_t last = 0;
+        for (std::size_t at = 0; at < index.size(); ++at) {
+            if (!wrong(at)) continue;
+            for (std::size_t from = 0; from < index.size(); ++from)
+                if (from != at && source(from) && sampleFits(axis, at, from)) {
+                    index[at] = from;
+                    found.moved += (found.moved.empty() ? "" : ", ") + text(at, from);
+                    last = at;
+                    ++found.count;
+                    break;
+                }
+        }
+        found.pair = found.count == 2 && index[index[last]] == last;
+        found.low = std::min(last, index[last]);
+        found.high = std::max(last, index[last]);
+        return found;
+    }
+
     /// Layers or cones in another order.
     void exchangedAlong()
     {
         for (std::size_t axis = 0; axis < spatial_; ++axis) {
             if (isLine(axis) || plain_.extents[axis] < 2 || plain_.extents[axis] > 256) continue;
-            Rearrangement r = plain_;
-            std::string moved;
-            std::size_t count = 0, last = 0;
-            for (std::size_t at = 0; at < plain_.extents[axis]; ++at) {
-                if (!anyWrong(axis, at)) continue;
-                for (std::size_t from = 0; from < plain_.extents[axis]; ++from)
-                    if (from != at && sampleFits(axis, at, from)) {
-                        r.index[axis][at] = from;
-                        moved += (moved.empty() ? "" : ", ") + std::to_string(at) + " holds " + std::to_string(from);
-                        last = at;
-                        ++count;
-                        break;
-                    }
-            }
-            if (count == 0) continue;
-            const std::size_t other = r.index[axis][last];
-            const bool pair = count == 2 && r.index[axis][other] == last;
-            suspect(pair ? names_[axis] + "s " + std::to_string(std::min(last, other)) + " and " + std::to_string(std::max(last, other)) + " are exchanged"
-                         : names_[axis] + "s are in another order: " + moved,
-                    r);
+            const Exchange x = exchangesOn(
+                axis, [&](std::size_t at) { return anyWrong(axis, at); }, [](std::size_t) { return true; },
+                [](std::size_t at, std::size_t from) { return std::to_string(at) + " holds " + std::to_string(from); });
+            if (x.count == 0) continue;
+            suspect(x.pair ? names_[axis] + "s " + std::to_string(x.low) + " and " + std::to_string(x.high) + " are exchanged"
+                           : names_[axis] + "s are in another order: " + x.moved,
+                    x.r);
         }
     }
 
-    /// Channels exchanged or negated.
+    /// Channels exchanged.
     void exchangedComponents()
     {
-        const std::size_t n = buffer_.components.size();
-        if (n < 2) return;
-        std::vector<std::size_t> from(n);
-        std::iota(from.begin(), from.end(), std::size_t(0));
-        std::string moved;
-        std::size_t count = 0, last = 0;
-        for (std::size_t c = 0; c < n; ++c) {
-            if (!trial_.wrongComponents()[c]) continue;
-            for (std::size_t source = 0; source < n; ++source)
-                if (source != c && !buffer_.components[source].empty() && sampleFits(componentAxis(), c, source)) {
-                    from[c] = source;
-                    moved += (moved.empty() ? "'" : ", '") + buffer_.components[c] + "' holds '" + buffer_.components[source] + "'";
-                    last = c;
-                    ++count;
-                    break;
-                }
-        }
-        if (count == 0) return;
-        Rearrangement r = plain_;
-        r.index.back() = from;
-        const bool pair = count == 2 && from[from[last]] == last;
-        suspect(
-            pair ? "channels '" + buffer_.components[from[last]] + "' and '" + buffer_.components[last] + "' are exchanged" : "channels are mixed up: " + moved,
-            r);
+        const std::vector<std::string>& names = buffer_.components;
+        if (names.size() < 2) return;
+        const Exchange x = exchangesOn(
+            plain_.extents.size() - 1, [&](std::size_t at) { return trial_.wrongComponents()[at]; }, [&](std::size_t from) { return !names[from].empty(); },
+            [&](std::size_t at, std::size_t from) { return "'" + names[at] + "' holds '" + names[from] + "'"; });
+        if (x.count == 0) return;
+        suspect(x.pair ? "channels '" + names[x.low] + "' and '" + names[x.high] + "' are exchanged" : "channels are mixed up: " + x.moved, x.r);
     }
-    std::size_t componentAxis() const { return plain_.extents.size() - 1; }
 
     void otherBuffers()
     {

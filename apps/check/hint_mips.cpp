@@ -1,6 +1,6 @@
 // Mip levels and their rounding.
+#include "apps/capture/passes.h"
 #include "apps/check/hint_trial.h"
-#include "apps/check/rerun.h"
 #include "core/base/formats.h"
 
 #include <algorithm>
@@ -9,18 +9,6 @@
 namespace lrsm {
 
 namespace {
-
-/// A buffer's name with another level.
-std::string nameAtLevel(const std::string& name, int level)
-{
-    const std::size_t at = name.rfind("mip");
-    return name.substr(0, at + 3) + std::to_string(level);
-}
-
-bool isMip(const std::string& name)
-{
-    return name.find(".mip") != std::string::npos;
-}
 
 /// Texel of the level below (or of any finer level) that a child offset names, for an element of this level.
 class Family {
@@ -74,7 +62,7 @@ const Buffer* levelBeside(const HintTrial& trial, int by)
 {
     const std::string& name = trial.expected().name;
     const int level = levelOf(name) + by;
-    return isMip(name) && level >= 0 ? trial.inputs().find(nameAtLevel(name, level)) : nullptr;
+    return isMip(name) && level >= 0 ? trial.inputs().find(mipName(stemOf(name), level)) : nullptr;
 }
 
 void suspectPicking(HintTrial& trial, const Buffer& below)
@@ -109,35 +97,18 @@ void suspectPicking(HintTrial& trial, const Buffer& below)
     trial.suspect("level off by one: it holds a corner of " + below.name, [&](std::size_t i) { return decodedValue(below, family.corner(i)); });
 }
 
+constexpr double kTieSteps = 65536.0;
+
 /// How a value becomes a code.
 struct Quantiser {
     const char* text;
-    double (*code)(const Buffer& storage, double ordinal);
+    double (*code)(double ordinal);
 };
-double towardZero(const Buffer&, double o)
-{
-    return std::trunc(o);
-}
-double nearestUp(const Buffer&, double o)
-{
-    return std::floor(o + 0.5);
-}
-double nearestEven(const Buffer&, double o)
-{
-    const double low = std::floor(o), rest = o - low;
-    if (rest != 0.5) return rest < 0.5 ? low : low + 1.0;
-    return std::fmod(low, 2.0) == 0.0 ? low : low + 1.0;
-}
-double awayFromZero(const Buffer&, double o)
-{
-    return o < 0.0 ? std::floor(o) : std::ceil(o);
-}
-constexpr double kTieSteps = 65536.0;
 constexpr Quantiser kQuantisers[] = {
-    {"rounds to nearest even", nearestEven},
-    {"rounds toward zero (truncates)", towardZero},
-    {"rounds to nearest, halves up", nearestUp},
-    {"rounds away from zero (up)", awayFromZero},
+    {"rounds to nearest even", [](double o) { return o - std::remainder(o, 1.0); }},
+    {"rounds toward zero (truncates)", [](double o) { return std::trunc(o); }},
+    {"rounds to nearest, halves up", [](double o) { return std::floor(o + 0.5); }},
+    {"rounds away from zero (up)", [](double o) { return o < 0.0 ? std::floor(o) : std::ceil(o); }},
 };
 
 /// Wrong codes with each quantiser, given what is to be rounded; a suspicion when one leaves hardly any.
@@ -156,7 +127,7 @@ void suspectQuantisers(HintTrial& trial, const std::string& ours, const Wide& wi
         // Sums of codes are exact but for the division: ties must stay ties.
         const double code = ordinalOf(expected, decodedValue(candidate, i)), exact = std::round(ordinalOf(expected, value) * kTieSteps) / kTieSteps;
         before += code != ordinalOf(expected, decodedValue(expected, i)) ? 1 : 0;
-        for (std::size_t q = 0; q < left.size(); ++q) left[q] += std::abs(code - kQuantisers[q].code(expected, exact)) > 1e-3 ? 1 : 0;
+        for (std::size_t q = 0; q < left.size(); ++q) left[q] += std::abs(code - kQuantisers[q].code(exact)) > 1e-3 ? 1 : 0;
     }
     if (considered == 0) return;
     for (std::size_t q = 0; q < left.size(); ++q)
@@ -167,9 +138,8 @@ std::string ownRounding(const HintTrial& trial)
 {
     const Buffer& expected = trial.expected();
     if (expected.encoding == Encoding::unorm) return "to nearest (UNORM: times 2^n - 1, plus 0.5, drop the fraction)";
-    const Settings& settings = trial.inputs().settings;
-    const HalfRounding rounding = expected.pass.starts_with("rsm") ? settings.rsm.halfRounding : settings.layers.halfRounding;
-    return rounding == HalfRounding::d3d ? "toward zero (half_rounding=d3d)" : "to nearest even (half_rounding=nearest_even)";
+    return halfRoundingOf(trial.inputs().settings, expected.pass) == HalfRounding::d3d ? "toward zero (half_rounding=d3d)"
+                                                                                       : "to nearest even (half_rounding=nearest_even)";
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // The pass run anew, with another setting or with something about its inputs changed: what the candidate may be computing instead.
-#include "apps/capture/convert.h"
+#include "apps/capture/fill.h"
+#include "apps/capture/passes.h"
 #include "apps/check/hint_trial.h"
-#include "apps/check/rerun.h"
 #include "core/base/errors.h"
 #include "core/settings/settings_table.h"
 
@@ -14,14 +14,6 @@ namespace {
 
 constexpr std::size_t kPixels = 4096;         ///< traced for each suspicion about the cones
 constexpr std::size_t kMostTexels = 1 << 22;  ///< passes with larger outputs are not tried once a setting
-
-std::string stageOf(const std::string& pass)
-{
-    if (pass == "voxelize" || pass == "voxel mips") return "voxel";
-    if (pass.starts_with("rsm")) return "rsm";
-    if (pass.starts_with("lrsm")) return "layers";
-    return pass;  // "direct", "cones"
-}
 
 std::vector<std::string> split(const std::string& text, const std::string& by)
 {
@@ -103,7 +95,7 @@ std::vector<bool> choosePixels(const HintTrial& trial, std::size_t pixels)
 
 class PassSuspicions {
   public:
-    explicit PassSuspicions(HintTrial& trial) : trial_(trial), expected_(trial.expected()), changed_(trial.inputs())
+    PassSuspicions(HintTrial& trial, std::string stage) : trial_(trial), expected_(trial.expected()), stage_(std::move(stage)), changed_(trial.inputs())
     {
         if (perPixel()) thinOut();
         for (std::size_t i = 0; i < trial.count(); ++i) before_ += chosen(i) && trial_.wrong(i) ? 1 : 0;
@@ -113,15 +105,20 @@ class PassSuspicions {
     {
         if (before_ == 0 || (!perPixel() && trial_.count() > kMostTexels)) return;
         const Settings own = changed_.settings;
-        for (const auto& [text, settings] : otherSettings(own, stageOf(expected_.pass))) {
+        for (const auto& [text, settings] : otherSettings(own, stage_)) {
             changed_.settings = settings;
             tryPass("as with " + text + " (the golden has " + valueOf(own, text) + ")");
         }
         changed_.settings = own;
-        if (expected_.pass == "cones") tryLayers();
-        if (expected_.pass == "cones") tryVoxels();
-        if (expected_.pass == "cones") tryRotations();
-        if (expected_.pass == "direct") trySides();
+        if (expected_.pass == "cones") {
+            tryLayers();
+            tryWithoutLights();
+        }
+        if (perPixel()) trySides();
+        if (expected_.pass == "cones") {
+            tryVoxels();
+            tryRotations();
+        }
     }
 
   private:
@@ -165,27 +162,39 @@ class PassSuspicions {
         trial_.note(text, left, before_);
     }
 
-    /// Runs with every texel of these buffers changed, then puts them back.
-    template <class Change>
-    void tryChanged(const std::string& text, const std::string& part, const Change& change)
+    /// Runs with these buffers changed, then puts them back.
+    template <class Which, class Change>
+    void tryChanged(const std::string& text, const Which& which, const Change& change)
+    {
+        const std::vector<Buffer> kept = changeSome(which, change);
+        if (!kept.empty()) tryPass(text);
+        restore(kept);
+    }
+    /// The buffers as they were.
+    template <class Which, class Change>
+    std::vector<Buffer> changeSome(const Which& which, const Change& change)
     {
         std::vector<Buffer> kept;
-        bool any = false;
         for (Buffer& buffer : changed_.buffers)
-            if (buffer.name.starts_with("lrsm") && buffer.name.find(part) != std::string::npos && buffer.dtype != Dtype::f4) {
+            if (which(buffer)) {
                 kept.push_back(buffer);
                 change(buffer);
-                any = true;
             }
-        if (any) tryPass(text);
-        for (const Buffer& original : kept)
-            for (Buffer& buffer : changed_.buffers)
-                if (buffer.name == original.name) buffer.bytes = original.bytes;
+        return kept;
     }
+    void restore(const std::vector<Buffer>& kept)
+    {
+        for (const Buffer& original : kept) findBuffer(changed_.buffers, original.name)->bytes = original.bytes;
+    }
+    static auto startsWith(const std::string& prefix)
+    {
+        return [prefix](const Buffer& buffer) { return buffer.name.starts_with(prefix); };
+    }
+    static void clear(Buffer& buffer) { std::fill(buffer.bytes.begin(), buffer.bytes.end(), std::byte{0}); }
 
+    /// Alpha as 1 wherever there is something: then nothing is divided by it.
     void tryLayers()
     {
-        // Alpha as 1 wherever there is something: then nothing is divided by it.
         const auto alphaOne = [](Buffer& buffer) {
             const bool depth = buffer.name.find(".depth.") != std::string::npos;
             const std::size_t at = depth ? 2 : 3;
@@ -194,71 +203,47 @@ class PassSuspicions {
             for (std::size_t texel = 0; texel < buffer.bytes.size() / 8; ++texel)
                 if (codes[texel * 4 + at] != 0) codes[texel * 4 + at] = depth ? kUnormOne : kHalfOne;
         };
-        tryChanged("the mean normal is not divided by alpha", ".normal.", alphaOne);
-        tryChanged("the mean depths are not divided by alpha", ".depth.", alphaOne);
-        {
-            std::vector<Buffer> kept;
-            for (Buffer& buffer : changed_.buffers)
-                if (buffer.name.starts_with("lrsm") && buffer.name.find(".radiance.") == std::string::npos && buffer.dtype != Dtype::f4) {
-                    kept.push_back(buffer);
-                    alphaOne(buffer);
-                }
-            if (!kept.empty()) tryPass("what a layer holds is not divided by alpha");
-            restore(kept);
-        }
-        const std::vector<CapturedLight> lights = changed_.lights;
-        for (std::size_t light = 0; light < lights.size(); ++light) {
-            tryWithoutLight(light);
-            for (std::size_t layer = 0; layer < lights[light].storedRanges().size() && lights[light].storedRanges().size() > 1; ++layer)
-                tryWithoutLayer(light, layer);
-        }
-        trySides();
+        const auto layers = [](bool normal, bool depth) {
+            return [normal, depth](const Buffer& b) {
+                const bool named = (normal && b.name.find(".normal.") != std::string::npos) || (depth && b.name.find(".depth.") != std::string::npos);
+                return named && b.name.starts_with("lrsm") && b.dtype != Dtype::f4;
+            };
+        };
+        tryChanged("the mean normal is not divided by alpha", layers(true, false), alphaOne);
+        tryChanged("the mean depths are not divided by alpha", layers(false, true), alphaOne);
+        tryChanged("what a layer holds is not divided by alpha", layers(true, true), alphaOne);
     }
 
-    /// v runs the other way when the LRSM is looked up.
+    void tryWithoutLights()
+    {
+        for (std::size_t light = 0; light < changed_.lights.size(); ++light) {
+            const std::string name = "light " + std::to_string(light);
+            const auto own = startsWith("lrsm" + std::to_string(light) + ".");
+            if (changed_.lights.size() > 1) tryChanged(name + " is left out", own, clear);
+            const std::size_t layers = changed_.lights[light].storedRanges().size();
+            for (std::size_t layer = 0; layer < layers && layers > 1; ++layer)
+                tryChanged("layer " + std::to_string(layer) + " of " + name + " is left out", own, [&](Buffer& buffer) {
+                    const std::size_t bytes = buffer.bytes.size() / buffer.shape[0];
+                    std::fill_n(buffer.bytes.begin() + static_cast<std::ptrdiff_t>(layer * bytes), bytes, std::byte{0});
+                });
+        }
+    }
+
+    /// The light's map read the other way.
     void trySides()
     {
         const std::vector<CapturedLight> lights = changed_.lights;
-        for (CapturedLight& light : changed_.lights) light.projection.up = -light.projection.up;
-        tryPass("the light's map is looked up with v flipped");
-        changed_.lights = lights;
-        for (CapturedLight& light : changed_.lights) light.projection.right = -light.projection.right;
-        tryPass("the light's map is looked up with u flipped");
-        changed_.lights = lights;
+        for (const auto& [name, axis] : {std::pair("v", &LightProjection::up), std::pair("u", &LightProjection::right)}) {
+            for (CapturedLight& light : changed_.lights) light.projection.*axis = -(light.projection.*axis);
+            tryPass(std::string("the light's map is looked up with ") + name + " flipped");
+            changed_.lights = lights;
+        }
     }
 
-    void restore(const std::vector<Buffer>& kept)
+    void tryVoxels()
     {
-        for (const Buffer& original : kept)
-            for (Buffer& buffer : changed_.buffers)
-                if (buffer.name == original.name) buffer.bytes = original.bytes;
-    }
-
-    void tryWithoutLayer(std::size_t light, std::size_t layer)
-    {
-        std::vector<Buffer> kept;
-        const std::string prefix = "lrsm" + std::to_string(light) + ".";
-        for (Buffer& buffer : changed_.buffers)
-            if (buffer.name.starts_with(prefix)) {
-                kept.push_back(buffer);
-                const std::size_t bytes = buffer.bytes.size() / buffer.shape[0];
-                std::fill_n(buffer.bytes.begin() + static_cast<std::ptrdiff_t>(layer * bytes), bytes, std::byte{0});
-            }
-        tryPass("layer " + std::to_string(layer) + " of light " + std::to_string(light) + " is left out");
-        restore(kept);
-    }
-
-    void tryWithoutLight(std::size_t light)
-    {
-        if (changed_.lights.size() < 2) return;
-        std::vector<Buffer> kept;
-        for (Buffer& buffer : changed_.buffers)
-            if (buffer.name.starts_with("lrsm" + std::to_string(light) + ".")) {
-                kept.push_back(buffer);
-                std::fill(buffer.bytes.begin(), buffer.bytes.end(), std::byte{0});
-            }
-        tryPass("light " + std::to_string(light) + " is left out");
-        restore(kept);
+        tryChanged("nothing is occluded: the voxels are read as empty", startsWith("voxel."), clear);
+        tryChanged("the voxels' mips are read as empty", startsWith("voxel.mip"), clear);
     }
 
     /// The picture upside down or mirrored: the pass is the same but for the rotations, which go by row and column.
@@ -269,12 +254,7 @@ class PassSuspicions {
     }
     void tryMirrored(const std::string& text, bool rows)
     {
-        std::vector<Buffer> kept;
-        for (Buffer& buffer : changed_.buffers)
-            if (buffer.pass == "gbuffer") {
-                kept.push_back(buffer);
-                mirror(buffer, rows);
-            }
+        const std::vector<Buffer> kept = changeSome([](const Buffer& b) { return b.pass == "gbuffer"; }, [&](Buffer& b) { mirror(b, rows); });
         Rerun rerun = rerunPass(changed_, expected_.pass);
         restore(kept);
         for (Buffer& made : rerun.outputs) {
@@ -296,34 +276,9 @@ class PassSuspicions {
         }
     }
 
-    void tryVoxels()
-    {
-        std::vector<Buffer> kept;
-        for (Buffer& buffer : changed_.buffers)
-            if (buffer.name.starts_with("voxel.")) {
-                kept.push_back(buffer);
-                std::fill(buffer.bytes.begin(), buffer.bytes.end(), std::byte{0});
-            }
-        tryPass("nothing is occluded: the voxels are read as empty");
-        restore(kept);
-        if (const std::vector<Buffer> mips = clearVoxelMips(); !mips.empty()) {
-            tryPass("the voxels' mips are read as empty");
-            restore(mips);
-        }
-    }
-    std::vector<Buffer> clearVoxelMips()
-    {
-        std::vector<Buffer> kept;
-        for (Buffer& buffer : changed_.buffers)
-            if (buffer.name.starts_with("voxel.mip")) {
-                kept.push_back(buffer);
-                std::fill(buffer.bytes.begin(), buffer.bytes.end(), std::byte{0});
-            }
-        return kept;
-    }
-
     HintTrial& trial_;
     const Buffer& expected_;
+    const std::string stage_;
     Capture changed_;  ///< what the pass is run on
     std::vector<bool> chosen_;
     std::size_t before_ = 0;
@@ -333,9 +288,8 @@ class PassSuspicions {
 
 void suspectPass(HintTrial& trial)
 {
-    const std::string& pass = trial.expected().pass;
-    if (pass == "scene" || pass == "tables" || pass == "composite" || pass == "filter" || pass == "gbuffer") return;
-    PassSuspicions(trial).run();
+    const PassRow* row = findPassRow(trial.expected().pass);
+    if (row && !row->stage.empty()) PassSuspicions(trial, row->stage).run();
 }
 
 }  // namespace lrsm

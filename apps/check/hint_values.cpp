@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 namespace lrsm {
 
@@ -44,18 +43,11 @@ constexpr NamedFactor kFactors[] = {
 };
 constexpr double kSameFactor = 4e-3;
 
-std::string number(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.5g", value);
-    return text;
-}
-
 std::string nameOfFactor(double factor)
 {
     for (const NamedFactor& known : kFactors)
         if (std::abs(factor - known.value) <= kSameFactor * known.value) return known.name;
-    return number(factor);
+    return numberText(5, factor);
 }
 
 double median(std::vector<double>& values)
@@ -120,7 +112,7 @@ class ValueSuspicions {
         for (const NamedFactor& known : kFactors)
             if (name == known.name && suspect("off by a constant factor: " + name + " times what is expected", [&](double g) { return g * known.value; }))
                 return;
-        suspect("off by a constant factor: " + number(factor) + " times what is expected", [&](double g) { return g * factor; });
+        suspect("off by a constant factor: " + numberText(5, factor) + " times what is expected", [&](double g) { return g * factor; });
     }
 
     void signs()
@@ -142,7 +134,7 @@ class ValueSuspicions {
         }
         if (shifts.size() < 8) return;
         const double shift = median(shifts);
-        if (shift != 0.0) suspect("off by a constant: " + number(shift) + " is added", [&](double g) { return g + shift; });
+        if (shift != 0.0) suspect("off by a constant: " + numberText(5, shift) + " is added", [&](double g) { return g + shift; });
     }
 
     void encodings()
@@ -187,7 +179,7 @@ void suspectConstant(HintTrial& trial)
 {
     const double first = trial.candidateAt(trial.sample().front());
     if (trial.expected().encoding == Encoding::bits) return;
-    trial.suspect(std::isnan(first) ? "all is NaN" : "every element is " + number(first) + (first == 0.0 ? ": never written?" : ""),
+    trial.suspect(std::isnan(first) ? "all is NaN" : "every element is " + numberText(5, first) + (first == 0.0 ? ": never written?" : ""),
                   [&](std::size_t) { return first; });
 }
 

@@ -1,21 +1,13 @@
 #include "apps/check/texel_inputs.h"
 
+#include "apps/capture/passes.h"
 #include "apps/check/compare.h"
-#include "apps/check/rerun.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace lrsm {
 
 namespace {
-
-std::string shortest(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.7g", value);
-    return text;
-}
 
 /// Indices of the texel's first component, without the component axis: "row 3, column 7".
 std::string texelPlace(const Buffer& buffer, std::size_t element)
@@ -33,27 +25,15 @@ class Inputs {
 
     void collect()
     {
-        const std::string& pass = buffer_.pass;
         const int level = levelOf(buffer_.name);
-        if (pass == "voxel mips")
+        const PassRow* row = findPassRow(buffer_.pass);
+        if (row && !row->sameTexel.empty()) texelOf(row->sameTexel);
+        if (buffer_.pass == "voxel mips")
             voxelChildren(level);
-        else if (pass.starts_with("lrsm") && level > 0)
-            layerChildren(level);
-        else if (pass.starts_with("lrsm"))
-            rsmBlock();
-        else if (pass.starts_with("rsm"))
-            texelOf({"rsm#.depth", "rsm#.radiance", "rsm#.normal"});
-        else if (pass == "gbuffer")
-            texelOf({"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "direct")
-            texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"});
-        else if (pass == "cones")
+        else if (buffer_.pass == "cones")
             cones();
-        else if (pass == "filter")
-            texelOf({"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"});
-        else if (pass == "composite")
-            texelOf(
-                {"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse", "composite.specular"});
+        else if (isMip(buffer_.name))
+            level > 0 ? layerChildren(level) : rsmBlock();
     }
 
   private:
@@ -83,11 +63,10 @@ class Inputs {
 
     void cones()
     {
-        texelOf({"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"});
         const std::size_t first = buffer_.axes[0] == "cone" ? 1 : 0, row = at_[first], column = at_[first + 1];
         const Buffer* rotation = capture_.find("tables.rotation");
         if (rotation && !rotation->bytes.empty())
-            list.push_back({"rotation of the pixel's cones (tables.rotation)", shortest(decodedValue(*rotation, (row & 3) * 4 + (column & 3)))});
+            list.push_back({"rotation of the pixel's cones (tables.rotation)", numberText(7, decodedValue(*rotation, (row & 3) * 4 + (column & 3)))});
         if (first == 1) {
             const Buffer* axes = capture_.find("tables.cone_directions");
             if (axes && rotation && axes->shape.size() == 3)
@@ -100,7 +79,7 @@ class Inputs {
 
     void voxelChildren(int level)
     {
-        const std::string below = level > 1 ? "voxel.mip" + std::to_string(level - 1) : "voxel.bits";
+        const std::string below = level > 1 ? mipName("voxel", level - 1) : "voxel.bits";
         for (std::size_t child = 0; child < 8; ++child) add(below, {2 * at_[0] + (child >> 2), 2 * at_[1] + (child >> 1 & 1), 2 * at_[2] + (child & 1)});
         if (level > 1 && level <= 3 && buffer_.components.size() == 3)
             list.push_back({"of voxel.bits", "its value counts columns of the " + std::to_string(1 << level) + "^3 voxels from z " +
@@ -110,7 +89,7 @@ class Inputs {
 
     void layerChildren(int level)
     {
-        const std::string below = buffer_.name.substr(0, buffer_.name.rfind("mip") + 3) + std::to_string(level - 1);
+        const std::string below = mipName(stemOf(buffer_.name), level - 1);
         for (std::size_t child = 0; child < 4; ++child) add(below, {at_[0], 2 * at_[1] + (child >> 1), 2 * at_[2] + (child & 1)});
     }
 
@@ -124,9 +103,9 @@ class Inputs {
         const std::vector<LayerRange> ranges = capture_.lights[light].storedRanges();
         if (at_[0] >= ranges.size()) return;
         const LayerRange& r = ranges[at_[0]];
-        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + shortest(r.depthMin) + ", " + shortest(r.depthMax) + "], <n.l> [" +
-                                                                        shortest(r.nDotLMin) + ", " + shortest(r.nDotLMax) + "], overlap " +
-                                                                        shortest(r.delta)});
+        list.push_back({"range of layer " + std::to_string(at_[0]), "depth [" + numberText(7, r.depthMin) + ", " + numberText(7, r.depthMax) + "], <n.l> [" +
+                                                                        numberText(7, r.nDotLMin) + ", " + numberText(7, r.nDotLMax) + "], overlap " +
+                                                                        numberText(7, r.delta)});
     }
 
     const Capture& capture_;
@@ -144,7 +123,7 @@ std::string texelText(const Buffer& buffer, std::size_t element)
         if (!buffer.components.empty() && buffer.components[c].empty()) continue;
         text += text.empty() ? "" : ", ";
         if (!buffer.components.empty()) text += buffer.components[c] + " ";
-        text += shortest(decodedValue(buffer, first + c));
+        text += numberText(7, decodedValue(buffer, first + c));
     }
     return text;
 }

@@ -1,9 +1,9 @@
 #include "catch.h"
 #include "scratch.h"
 
+#include "apps/capture/capture_files.h"
 #include "apps/capture/record.h"
 #include "apps/check/check.h"
-#include "core/base/output_folder.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/settings/settings_table.h"
 #include "tests/twin/compare.h"

@@ -1,6 +1,7 @@
-#include "apps/capture/manifest.h"
+#include "apps/capture/capture_files.h"
+#include "apps/capture/manifest_read.h"
+#include "apps/capture/manifest_write.h"
 #include "core/base/errors.h"
-#include "core/base/output_folder.h"
 #include "tests/apps/capture/capture_fixture.h"
 
 #include "catch.h"

@@ -1,7 +1,7 @@
+#include "apps/capture/capture_files.h"
 #include "apps/check/candidate.h"
 #include "apps/check/check.h"
 #include "core/base/errors.h"
-#include "core/base/output_folder.h"
 #include "core/imageio/image_io.h"
 #include "tests/apps/capture/capture_fixture.h"
 

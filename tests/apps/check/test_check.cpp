@@ -1,6 +1,6 @@
+#include "apps/capture/rerun.h"
 #include "apps/check/bless.h"
 #include "apps/check/check.h"
-#include "apps/check/rerun.h"
 #include "apps/check/texel_inputs.h"
 #include "core/base/errors.h"
 #include "core/base/formats.h"

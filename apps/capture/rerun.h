@@ -22,13 +22,16 @@ Rerun rerunPass(const Capture& inputs, const std::string& pass);
 /// One output of "rsm i" or of the base level of "lrsm i" as float32, before it is converted to its storage. Nothing where that cannot be had.
 std::optional<Buffer> wideOutput(const Capture& inputs, const std::string& buffer);
 
-/// Does the pass read the scene and tables alone? Then the golden is what ours makes of the candidate's inputs.
-bool readsSceneAlone(const CapturedPass& pass);
-
-/// "lrsm 1" -> 1; 0 without a number.
-std::size_t lightOfPass(const std::string& pass);
-
-/// "lrsm0.depth.mip3" -> 3; 0 for others. The order of the data flow within a pass.
-int levelOf(const std::string& buffer);
+// The passes' own, for their rows (passes.h).
+void rerunVoxelize(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunVoxelMips(const Capture& inputs, std::size_t light, Rerun& made);
+void makeRsm(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
+void makeLrsmBase(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
+void rerunLrsm(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunGBuffer(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunDirect(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunCones(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunFilter(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunComposite(const Capture& inputs, std::size_t light, Rerun& made);
 
 }  // namespace lrsm

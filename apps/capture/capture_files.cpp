@@ -1,10 +1,10 @@
-// A capture's folder: manifest, .npy and DDS, in and out.
-#include "apps/capture/capture.h"
-#include "apps/capture/manifest.h"
+#include "apps/capture/capture_files.h"
+
+#include "apps/capture/manifest_read.h"
+#include "apps/capture/manifest_write.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
-#include "core/base/output_folder.h"
 
 #include <filesystem>
 

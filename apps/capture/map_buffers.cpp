@@ -1,6 +1,7 @@
-// RSM and LRSM: values as the passes hold them (float32 that the storage can represent) to the storage's own bits, and back.
-#include "apps/capture/convert.h"
+#include "apps/capture/map_buffers.h"
+
 #include "apps/capture/fill.h"
+#include "apps/capture/tolerances.h"
 #include "core/base/formats.h"
 #include "core/base/parallel.h"
 
@@ -57,7 +58,7 @@ std::string rsmPrefix(std::size_t light)
 }
 std::string lrsmName(std::size_t light, const char* texture, int lod)
 {
-    return "lrsm" + std::to_string(light) + "." + texture + ".mip" + std::to_string(lod);
+    return mipName("lrsm" + std::to_string(light) + "." + texture, lod);
 }
 
 struct LrsmTexture {
@@ -79,7 +80,50 @@ const CapturedLight& lightOf(const Capture& capture, std::size_t light)
     return capture.lights[light];
 }
 
+constexpr TexelFormat kHalf4 = {Dtype::f2, Encoding::number, DxgiFormat::R16G16B16A16_FLOAT};
+constexpr TexelFormat kUnorm4 = {Dtype::u2, Encoding::unorm, DxgiFormat::R16G16B16A16_UNORM};
+constexpr TexelFormat kFloat4 = {Dtype::f4, Encoding::number, DxgiFormat::R32G32B32A32_FLOAT};
+
 }  // namespace
+
+void describeRsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
+{
+    const RsmSettings& settings = frame.settings.rsm;
+    const std::string prefix = rsmPrefix(light);
+    const TexelFormat format = settings.storage == Storage::gpu ? kHalf4 : kFloat4;
+    const int n = settings.resolution;
+    const auto map = [&](const std::string& name, const Catalogue::Names& components, const Catalogue::Text& text, const Tolerance& tolerance,
+                         const TexelFormat& as) {
+        Buffer& buffer = out.picture(prefix + name, n, n, components, text, tolerance, as.dtype);
+        buffer.dds = DdsPlace{prefix + name + ".dds", 0, as.dds, false};
+    };
+    map("radiance", {"r", "g", "b", "coverage"}, {"reflected radiance albedo L <n.l> / pi; coverage 1 where a surface was drawn", "light's map", kRadianceUnit},
+        tolerances::mapRadiance(n), format);
+    map("normal", {"x", "y", "z", "n_dot_l"}, {"shading normal towards the light, and its cosine to it", kWorldSpace, ""}, tolerances::mapNormal(n), format);
+    map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(n), {});
+}
+
+void describeLrsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
+{
+    const auto layers = static_cast<std::size_t>(frame.layersStored[light]);
+    if (layers == 0) return;
+    const bool gpu = frame.settings.layers.storage == Storage::gpu;
+    const auto texture = [&](const char* name, const Catalogue::Names& components, const Catalogue::Text& text, const auto& tolerance,
+                             const TexelFormat& format) {
+        for (int lod = 0, size = frame.settings.rsm.resolution / 2; size >= 1; ++lod, size /= 2) {
+            const auto n = static_cast<std::size_t>(size);
+            Buffer& buffer = out.add(lrsmName(light, name, lod), format.dtype, {layers, n, n}, {"layer", "row", "column"}, components, text, tolerance(lod));
+            buffer.encoding = format.encoding;
+            buffer.dds = DdsPlace{stemOf(buffer.name) + ".dds", static_cast<std::uint32_t>(lod), format.dds, false};
+        }
+    };
+    const auto half = [&](int) { return tolerances::layerHalf(gpu); };
+    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", kRadianceUnit}, half, gpu ? kHalf4 : kFloat4);
+    texture("normal", {"x", "y", "z", "alpha"}, {"normal times alpha, and alpha", kWorldSpace, ""}, half, gpu ? kHalf4 : kFloat4);
+    texture(
+        "depth", {"z", "z2", "alpha", ""}, {"alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), and alpha", "layer's depth", ""},
+        [&](int lod) { return tolerances::layerDepth(gpu, lod); }, gpu ? kUnorm4 : kFloat4);
+}
 
 void toBuffers(const Rsm& rsm, std::size_t light, std::vector<Buffer>& buffers)
 {

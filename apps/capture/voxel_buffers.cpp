@@ -1,5 +1,7 @@
-#include "apps/capture/convert.h"
+#include "apps/capture/voxel_buffers.h"
+
 #include "apps/capture/fill.h"
+#include "apps/capture/tolerances.h"
 
 #include <algorithm>
 
@@ -22,19 +24,49 @@ void unpackRows(const BitGrid& bits, Buffer& buffer)
             }
 }
 
-std::string mipName(int level)
+}  // namespace
+
+void describeBits(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
-    return "voxel.mip" + std::to_string(level);
+    const int resolution = frame.settings.voxel.resolution;
+    const auto n = static_cast<std::size_t>(resolution), bricks = static_cast<std::size_t>(BitGrid::bricksPerEdge(resolution));
+    Buffer& bits = out.add("voxel.bits", Dtype::u1, {n, n, (n + 7) / 8}, {"z", "y", "x_byte"}, {}, {"occupied voxels: bit x & 7 of byte x >> 3", "grid", ""},
+                           tolerances::kVoxels);
+    bits.encoding = Encoding::bits;
+    bits.dds = DdsPlace{"voxel.dds", 0, DxgiFormat::R8_UNORM, true};
+    Buffer& words = out.add("voxel.bricks", Dtype::u8, {bricks, bricks, bricks}, {"brick_z", "brick_y", "brick_x"}, {},
+                            {"the same, 4x4x4 voxels a word: bit (x & 3) + 4 (y & 3) + 16 (z & 3)", "grid", ""}, tolerances::kVoxels);
+    words.encoding = Encoding::bits;
 }
 
-}  // namespace
+void describeVoxelMips(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    const VoxelSettings& settings = frame.settings.voxel;
+    const bool directional = settings.axes == OpacityAxes::directional, unorm = settings.storage == Storage::gpu;
+    const DxgiFormat format =
+        unorm ? (directional ? DxgiFormat::R8G8B8A8_UNORM : DxgiFormat::R8_UNORM) : (directional ? DxgiFormat::R32G32B32A32_FLOAT : DxgiFormat::R32_FLOAT);
+    for (std::uint32_t level = 1; settings.resolution >> level >= 1; ++level) {
+        const auto n = static_cast<std::size_t>(settings.resolution >> level);
+        Buffer& mip = out.add(mipName("voxel", static_cast<int>(level)), unorm ? Dtype::u1 : Dtype::f4, {n, n, n}, {"z", "y", "x"},
+                              directional ? Catalogue::Names{"x", "y", "z"} : Catalogue::Names{},
+                              {directional ? "share of columns along the axis that are covered" : "opacity", "grid", ""}, tolerances::voxelMip(unorm));
+        if (unorm) mip.encoding = Encoding::unorm;
+        // One value a texel continues the base level's texture; three need a texture of their own.
+        const bool oneChain = unorm && !directional;
+        mip.dds = oneChain ? DdsPlace{"voxel.dds", level, format, true} : DdsPlace{"voxel.mips.dds", level - 1, format, true};
+    }
+}
+
+void toBuffers(const BitGrid& grid, std::vector<Buffer>& buffers)
+{
+    if (Buffer* bits = findBuffer(buffers, "voxel.bits")) unpackRows(grid, *bits);
+    copyTo(buffers, "voxel.bricks", grid.bricks);
+}
 
 void toBuffers(const OpacityPyramid& opacity, std::vector<Buffer>& buffers)
 {
-    if (Buffer* bits = findBuffer(buffers, "voxel.bits")) unpackRows(opacity.base, *bits);
-    copyTo(buffers, "voxel.bricks", opacity.base.bricks);
     for (int level = 1; level < opacity.levels(); ++level) {
-        Buffer* buffer = findBuffer(buffers, mipName(level));
+        Buffer* buffer = findBuffer(buffers, mipName("voxel", level));
         if (!buffer) continue;
         const std::size_t first = opacity.texelIndex(level, 0, 0, 0) * static_cast<std::size_t>(opacity.channels());
         buffer->bytes.resize(buffer->elements() * sizeOf(buffer->dtype));
@@ -77,7 +109,7 @@ OpacityPyramid opacityFromCapture(const Capture& capture)
         const auto n = static_cast<std::size_t>(opacity.resolutionAt(level)), values = n * n * n * static_cast<std::size_t>(opacity.channels());
         const std::size_t first = opacity.texelIndex(level, 0, 0, 0) * static_cast<std::size_t>(opacity.channels());
         const auto take = [&]<class T>(std::vector<T>& into, Dtype dtype) {
-            const auto from = valuesOf<T>(capture, mipName(level), dtype, values);
+            const auto from = valuesOf<T>(capture, mipName("voxel", level), dtype, values);
             const auto to = std::span(into).subspan(first, values);
             if (std::equal(from.begin(), from.end(), to.begin())) return;
             follows = false;

@@ -1,0 +1,217 @@
+#include "apps/capture/passes.h"
+
+#include "apps/capture/map_buffers.h"
+#include "apps/capture/picture_buffers.h"
+#include "apps/capture/scene_buffers.h"
+#include "apps/capture/tables.h"
+#include "apps/capture/voxel_buffers.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace lrsm {
+
+namespace {
+
+using Families = std::vector<std::string>;
+
+template <class T>
+void keep(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const T* made = output.as<T>()) toBuffers(*made, capture.buffers);
+}
+
+constexpr char kDirect[] = "direct.radiance", kFilter[] = "filter.irradiance";
+template <const char* name>
+void keepPicture(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* made = output.as<Image<Vec3>>()) toBuffers(*made, name, capture.buffers);
+}
+
+void keepBits(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    if (const auto* bits = output.as<BitGrid>()) capture.grid = bits->grid;
+    keep<BitGrid>(output, light, capture);
+}
+
+void keepRsm(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    const auto* rsm = output.as<Rsm>();
+    if (!rsm) return;
+    CapturedLight& to = capture.lights.at(light);
+    to.projection = rsm->projection;
+    to.partition = partition(*rsm, capture.settings.layers);
+    to.stored.assign(to.partition.size(), -1);
+    toBuffers(*rsm, light, capture.buffers);
+}
+
+void keepLrsm(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    const auto* lrsm = output.as<Lrsm>();
+    if (!lrsm) return;
+    // Which of the partition's layers it holds: they come in the same order.
+    CapturedLight& to = capture.lights.at(light);
+    to.validTexels = lrsm->validTexelsPerLayer;
+    int next = 0;
+    for (std::size_t i = 0; i < to.partition.size(); ++i)
+        if (next < lrsm->layers() && lrsm->ranges[static_cast<std::size_t>(next)] == to.partition[i]) to.stored[i] = next++;
+    // How many layers there are is known only now: the buffers were described with all of them.
+    const auto own = [&](const Buffer& b) { return passFamily(b.pass) == "lrsm" && lightOfPass(b.pass) == light; };
+    if (lrsm->layers() == 0) std::erase_if(capture.buffers, own);
+    for (Buffer& buffer : capture.buffers)
+        if (own(buffer)) buffer.shape[0] = static_cast<std::size_t>(lrsm->layers());
+    toBuffers(*lrsm, light, capture.buffers);
+}
+
+void keepCones(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    keep<Gathered>(output, light, capture);
+    keep<ConeRecord>(output, light, capture);
+}
+
+void keepComposite(const Frame& frame, Capture& capture)
+{
+    toBuffers(frame.indirectDiffuse, "composite.diffuse", capture.buffers);
+    toBuffers(frame.indirectSpecular, "composite.specular", capture.buffers);
+    toBuffers(frame.combined, "composite.combined", capture.buffers);
+}
+
+Families readForShadows(const Settings& settings)
+{
+    if (settings.direct.shadows == Shadows::hard) return {"rsm"};
+    if (settings.direct.shadows == Shadows::cone) return {"voxelize", "voxel mips"};
+    return {};
+}
+
+Families readFiltered(const Settings& settings)
+{
+    return settings.cones.set.filter ? Families{"filter"} : Families{};
+}
+
+// clang-format off
+const std::vector<PassRow> kRows = {
+    {.family = "scene", .given = true, .describe = describeScene},
+    {.family = "tables", .given = true, .describe = describeTables},
+    {.family = "voxelize", .stage = "voxel", .reads = {"scene"},
+     .describe = describeBits, .record = keepBits, .rerun = rerunVoxelize},
+    {.family = "voxel mips", .stage = "voxel", .reads = {"voxelize"},
+     .describe = describeVoxelMips, .record = keep<OpacityPyramid>, .rerun = rerunVoxelMips},
+    {.family = "rsm", .perLight = true, .stage = "rsm", .reads = {"scene"},
+     .describe = describeRsm, .record = keepRsm, .makeMap = makeRsm,
+     .sameTexel = {"rsm#.depth", "rsm#.radiance", "rsm#.normal"}},
+    {.family = "lrsm", .perLight = true, .stage = "layers", .reads = {"rsm"},
+     .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
+    {.family = "gbuffer", .reads = {"scene"},
+     .describe = describeGBuffer, .record = keep<GBuffer>, .rerun = rerunGBuffer,
+     .sameTexel = {"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"}},
+    {.family = "direct", .stage = "direct", .reads = {"gbuffer"}, .readsBesides = readForShadows,
+     .describe = describeDirect, .record = keepPicture<kDirect>, .rerun = rerunDirect,
+     .sameTexel = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"}},
+    {.family = "cones", .stage = "cones", .reads = {"tables", "gbuffer", "voxelize", "voxel mips", "lrsm"},
+     .describe = describeCones, .record = keepCones, .rerun = rerunCones,
+     .sameTexel = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"}},
+    {.family = "filter", .reads = {"gbuffer", "cones"},
+     .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
+     .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones"}, .readsBesides = readFiltered,
+     .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
+     .sameTexel = {"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
+                   "composite.specular"}},
+};
+// clang-format on
+
+std::string passName(const PassRow& row, std::size_t light)
+{
+    return row.perLight ? row.family + " " + std::to_string(light) : row.family;
+}
+
+/// "lrsm 0" and "lrsm0" are one pass, "voxel-mips" is "voxel mips".
+std::string plain(std::string pass)
+{
+    std::erase_if(pass, [](char letter) { return letter == ' ' || letter == '-' || letter == '_'; });
+    return pass;
+}
+
+}  // namespace
+
+const std::vector<PassRow>& passRows()
+{
+    return kRows;
+}
+
+const PassRow* findPassRow(const std::string& pass)
+{
+    const std::string family = passFamily(pass);
+    const auto found = std::find_if(passRows().begin(), passRows().end(), [&](const PassRow& row) { return row.family == family; });
+    return found == passRows().end() ? nullptr : &*found;
+}
+
+bool isGiven(const std::string& pass)
+{
+    const PassRow* row = findPassRow(pass);
+    return row && row->given;
+}
+
+std::size_t lightOfPass(const std::string& pass)
+{
+    const std::size_t family = passFamily(pass).size();
+    return family == pass.size() ? 0 : static_cast<std::size_t>(std::strtoul(pass.c_str() + family, nullptr, 10));
+}
+
+HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
+{
+    return passFamily(pass) == "rsm" ? settings.rsm.halfRounding : settings.layers.halfRounding;
+}
+
+std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights)
+{
+    std::vector<std::string> inputs;
+    const PassRow* row = findPassRow(pass);
+    if (!row) return inputs;
+    Families families = row->reads;
+    if (row->readsBesides) std::ranges::copy(row->readsBesides(settings), std::back_inserter(families));
+    for (const std::string& family : families) {
+        const PassRow* input = findPassRow(family);
+        const bool all = input && input->perLight && !row->perLight;
+        for (std::size_t light = 0; light < (all ? lights : 1); ++light) inputs.push_back(input ? passName(*input, all ? light : lightOfPass(pass)) : family);
+    }
+    return inputs;
+}
+
+bool isAskedFor(const std::vector<std::string>& asked, const std::string& pass)
+{
+    return asked.empty() || std::any_of(asked.begin(), asked.end(),
+                                        [&](const std::string& each) { return plain(each) == plain(pass) || plain(each) == plain(passFamily(pass)); });
+}
+
+std::string passNames(const std::string& ofLights)
+{
+    std::string text;
+    const std::vector<PassRow>& rows = passRows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].given) continue;
+        std::string name = rows[i].family;
+        std::replace(name.begin(), name.end(), ' ', '-');
+        const bool lastOfLights = rows[i].perLight && (i + 1 == rows.size() || !rows[i + 1].perLight);
+        text += (text.empty() ? "" : ", ") + name + (lastOfLights ? ofLights : "");
+    }
+    return text;
+}
+
+std::vector<Buffer> describeBuffers(const DescribedFrame& frame)
+{
+    Catalogue out;
+    const auto describe = [&](const PassRow& row, std::size_t light) {
+        out.pass = passName(row, light);
+        row.describe(out, frame, light);
+    };
+    for (auto row = passRows().begin(); row != passRows().end();) {
+        const auto end = std::find_if(row, passRows().end(), [&](const PassRow& other) { return other.perLight != row->perLight; });
+        for (std::size_t light = 0; light < (row->perLight ? frame.layersStored.size() : 1); ++light)
+            for (auto each = row; each != end; ++each) describe(*each, light);
+        row = end;
+    }
+    return std::move(out.buffers);
+}
+
+}  // namespace lrsm

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "apps/capture/capture.h"
+#include "apps/capture/catalogue.h"
+#include "conetrace/lrsm/gather.h"
+
+/// The buffers of the passes that make pictures, from "gbuffer" to "composite". What comes back has the very bits that went in.
+namespace lrsm {
+
+void describeGBuffer(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeDirect(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeCones(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeComposite(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+
+// Fill in the bytes of those that are in the list; the others are left out.
+void toBuffers(const GBuffer& gbuffer, std::vector<Buffer>& buffers);
+void toBuffers(const Gathered& gathered, std::vector<Buffer>& buffers);
+void toBuffers(const ConeRecord& cones, std::vector<Buffer>& buffers);
+void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<Buffer>& buffers);
+
+// InputError naming the buffer that is not in the capture.
+GBuffer gbufferFromCapture(const Capture& capture);
+Gathered gatheredFromCapture(const Capture& capture);
+Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name);
+/// The irradiance that the composite reads: the filter's where it ran.
+Image<Vec3> irradianceFromCapture(const Capture& capture);
+
+}  // namespace lrsm
