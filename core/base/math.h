@@ -42,7 +42,7 @@ struct Aabb {
     bool operator==(const Aabb&) const = default;
 };
 
-/// Orthonormal frame about `normal` (unit): columns are tangent, bitangent, normal.
+/// Orthonormal basis about `normal` (unit): columns are tangent, bitangent, normal.
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017. The rule is part of the
 /// golden definition: the azimuth of every cone hangs on it.
 inline Mat3 basisFromNormal(const Vec3& normal)

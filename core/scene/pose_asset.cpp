@@ -192,19 +192,19 @@ lrsm::Mesh worldMesh(const Primitive& primitive, const Mesh& source, const Node&
 }
 
 /// What lights and cameras take from their node: position, and unit axes along its -z and y.
-struct Frame {
+struct Placement {
     Vec3 position, forward, up;
 };
 
-Frame frameOf(const Node& node, const DMat4& world)
+Placement placementOf(const Node& node, const DMat4& world)
 {
     const DVec3 forward = unitOrZero(-DVec3(world[2]));
     const DVec3 y = unitOrZero(DVec3(world[1]));
     const DVec3 up = unitOrZero(y - forward * glm::dot(y, forward));
-    const Frame frame{Vec3(DVec3(world[3])), Vec3(forward), Vec3(up)};
-    if (forward == DVec3(0.0) || up == DVec3(0.0) || !isFinite(frame.position))
+    const Placement placement{Vec3(DVec3(world[3])), Vec3(forward), Vec3(up)};
+    if (forward == DVec3(0.0) || up == DVec3(0.0) || !isFinite(placement.position))
         throw InputError("node \"" + node.name + "\"", "its transform gives its light or camera no direction");
-    return frame;
+    return placement;
 }
 
 void addLight(const LocalLight& local, const Node& node, const DMat4& world, Scene& scene)
@@ -216,22 +216,22 @@ void addLight(const LocalLight& local, const Node& node, const DMat4& world, Sce
         scene.notes.push_back("point light \"" + local.light.name + "\" split into six faces of a cube");
         return;
     }
-    const Frame frame = frameOf(node, world);
+    const Placement placement = placementOf(node, world);
     Light light = local.light;
-    light.position = frame.position;
-    light.direction = frame.forward;
-    light.up = frame.up;
+    light.position = placement.position;
+    light.direction = placement.forward;
+    light.up = placement.up;
     scene.lights.push_back(std::move(light));
 }
 
 void addCamera(const Camera& local, const Node& node, const DMat4& world, Scene& scene)
 {
-    const Frame frame = frameOf(node, world);
+    const Placement placement = placementOf(node, world);
     Camera camera = local;
     if (camera.name.empty()) camera.name = node.name;
-    camera.position = frame.position;
-    camera.forward = frame.forward;
-    camera.up = frame.up;
+    camera.position = placement.position;
+    camera.forward = placement.forward;
+    camera.up = placement.up;
     scene.cameras.push_back(std::move(camera));
 }
 

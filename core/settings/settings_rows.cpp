@@ -143,16 +143,18 @@ using Specular = SpecularSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
+/// In the order of the enumeration Method.
 SettingRow methodRow()
 {
+    const Names names = {"lrsm"};
     return {.key = "method",
             .stage = "method",
             .unit = "",
             .meaning = "of indirect light: layered reflective shadow maps",
             .source = "paper: lrsm",
             .kind = SettingKind::choice,
-            .range = {0, 0},
-            .choices = {"lrsm"},
+            .range = {0, static_cast<float>(names.size() - 1)},
+            .choices = names,
             .get = [](const Settings& settings) { return static_cast<double>(settings.method); },
             .set = [](Settings& settings, double value) { settings.method = static_cast<Method>(value); }};
 }
