@@ -4,6 +4,8 @@
 
 namespace lrsm {
 
+class OutputFolder;
+
 /// What a capture holds, to look at: frame.exr and rsm<i>.exr (float32, a layer a buffer, under the buffer's name) and contact-sheet.png. Of
 /// buffers that are left out nothing is written. Deterministic; `check` does not read them.
 void writePictures(OutputFolder& folder, const Capture& capture);
