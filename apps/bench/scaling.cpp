@@ -11,13 +11,6 @@
 namespace lrsm {
 namespace {
 
-/// "voxel mips" -> "voxel_mips".
-std::string columnOf(std::string family)
-{
-    std::replace(family.begin(), family.end(), ' ', '_');
-    return family;
-}
-
 ScalingSample renderPoint(const ScalingAxis& axis, std::size_t index, int repeat)
 {
     const ScalingPoint& point = axis.points[index];
@@ -51,7 +44,7 @@ Counters scalingValues(const Frame& frame)
 {
     Counters values = {{"frame_cpu_ms", 0.0}, {"frame_ms", 0.0}};
     for (const PassReport& pass : frame.passes) {
-        const std::string column = columnOf(passFamily(pass.name));
+        const std::string column = passColumn(passFamily(pass.name));
         addTo(values, {"frame_cpu_ms", pass.cpuMilliseconds});
         addTo(values, {"frame_ms", pass.milliseconds});
         addTo(values, {column + "_cpu_ms", pass.cpuMilliseconds});

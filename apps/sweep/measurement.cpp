@@ -137,6 +137,12 @@ Json measurementJson(const Measurement& row)
     return json;
 }
 
+std::string passColumn(std::string family)
+{
+    std::replace(family.begin(), family.end(), ' ', '_');
+    return family;
+}
+
 Json measurementColumns(const Measurement& row)
 {
     Json flat = Json::object();
@@ -144,9 +150,7 @@ Json measurementColumns(const Measurement& row)
     for (const auto& [key, value] : json.items()) {
         if (key == "passes") {
             for (const auto& [family, times] : value.items()) {
-                std::string column = family + "_";
-                std::replace(column.begin(), column.end(), ' ', '_');
-                for (const char* figure : {"ms", "ms_min", "ms_spread"}) flat[column + figure] = times[figure];
+                for (const char* figure : {"ms", "ms_min", "ms_spread"}) flat[passColumn(family) + "_" + figure] = times[figure];
             }
         } else if (key == "counters") {
             flat.update(value);

@@ -79,6 +79,9 @@ struct Measurement {
 /// Passes and counters are those that the frame reported: no list of them is anywhere.
 /// Numbers that are not finite are null too; they read back as NaN. Reads back to the same bits.
 nlohmann::ordered_json measurementJson(const Measurement& row);
+/// What the columns of a family of passes begin with in tables: "voxel mips" -> "voxel_mips".
+std::string passColumn(std::string family);
+
 /// The same flat, for tables: a pass's three columns are FAMILY_ms, FAMILY_ms_min and FAMILY_ms_spread ("voxel_mips_ms"), a counter's is its name.
 nlohmann::ordered_json measurementColumns(const Measurement& row);
 /// Throws InputError beginning with `place`.
