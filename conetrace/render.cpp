@@ -94,7 +94,7 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
 
     // Indirect light, by the chosen method, and the picture.
     Gathered light = method.gather(
-        {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = frame.gbuffer, .rsms = world.rsms, .opacity = world.opacity}, log);
+        {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = frame.gbuffer, .rsms = world.rsms, .opacity = world.opacity, .lanes = options.lanes}, log);
     finish(frame, camera, std::move(light), log);
     return frame;
 }
