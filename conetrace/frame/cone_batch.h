@@ -9,9 +9,9 @@
 /// only apex and direction differ.
 namespace lrsm {
 
-inline constexpr int kTile = 16;                           ///< edge of the square of pixels that is one task
-inline constexpr int kBatchCones = kTile * kTile;          ///< cones that a batch holds at most
-inline constexpr int kWidestLanes = 16;                    ///< of any instruction set
+inline constexpr int kTile = 16;                               ///< edge of the square of pixels that is one task
+inline constexpr int kBatchCones = kTile * kTile;              ///< cones that a batch holds at most
+inline constexpr int kWidestLanes = 16;                        ///< of any instruction set
 inline constexpr int kBatchRoom = kBatchCones + kWidestLanes;  ///< lists are written a vector at a time
 
 /// Apices and axes; distances along a cone are in base voxels.
@@ -45,12 +45,13 @@ struct ConeBatchResult {
 struct MarchBatchScratch {
     std::vector<float> opticalDepth;  ///< [step * kBatchCones + cone], at each segment's end
     alignas(64) float exit[kBatchRoom], depth[kBatchRoom], density[kBatchRoom];
-    alignas(64) std::int32_t alive[kBatchRoom], occupied[kBatchRoom], wasOccupied[kBatchRoom];
+    alignas(64) std::int32_t octant[kBatchRoom], alive[kBatchRoom], occupied[kBatchRoom], wasOccupied[kBatchRoom];
     // Cones whose tap may meet a voxel: their sample's place, in voxels.
     alignas(64) std::int32_t lookup[kBatchRoom];
     alignas(64) float lookupVoxels[3][kBatchRoom];
     // Cones that may meet an emitter: their sample's place, in the world.
     alignas(64) std::int32_t request[kBatchRoom];
+    alignas(64) std::int32_t requestOctant[kBatchRoom];  // of its direction: bit k: component k is negative
     alignas(64) float requestWorld[3][kBatchRoom];
 };
 

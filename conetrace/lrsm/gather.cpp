@@ -14,6 +14,8 @@
 namespace lrsm {
 namespace {
 
+constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
+
 /// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
 struct ResultRecorder : NoRecorder {
     Vec4* next = nullptr;  ///< none: nothing is kept
@@ -73,13 +75,14 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
     }
 }
 
-/// visit(tileX, tileY, counts) over all tiles, in parallel.
-template <class Visit>
-void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const Visit& visit)
+/// All tiles, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts).
+template <class StartTask>
+void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const StartTask& startTask)
 {
     const int tilesX = (gbuffer.width + kTile - 1) / kTile, tilesY = (gbuffer.height + kTile - 1) / kTile;
     std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
-    parallelFor(counts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallelFor(counts.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+        auto visit = startTask();
         for (std::size_t tile = begin; tile < end; ++tile) visit(static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, counts[tile]);
     });
     for (const ConeCounts& tile : counts) out.counts += tile;
@@ -89,8 +92,10 @@ void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const Visit& visi
 void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
-        forTiles(gbuffer, out, [&](int tileX, int tileY, ConeCounts& counts) {
-            gatherTile<Estimator::paper>(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts);
+        forTiles(gbuffer, out, [&] {
+            return [&](int tileX, int tileY, ConeCounts& counts) {
+                gatherTile<Estimator::paper>(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts);
+            };
         });
     });
 }
@@ -98,8 +103,8 @@ void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
 /// The pixels of one tile as a batch of cones: all of them for one cone of the set, then for the next.
 class TileBatch {
   public:
-    TileBatch(const GBuffer& gbuffer, const ConeWorld& world, const GatherPlan& plan, MarchBatch march, const OpacityView& opacity)
-        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march), opacity_(opacity)
+    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, MarchBatch march)
+        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march)
     {
     }
 
@@ -122,13 +127,13 @@ class TileBatch {
                 const std::size_t pixel = gbuffer_.position.index(x, y);
                 if (!gbuffer_.covered(pixel)) continue;
                 pixels_.push_back(pixel);
-                receivers_.push_back(receiverAt(gbuffer_, world_.opacity.base.grid, world_.settings, x, y));
+                receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
             }
     }
 
     void gatherDiffuse(const GatherOutput& to, ConeCounts& counts)
     {
-        const int count = static_cast<int>(pixels_.size()), sets = world_.settings.set.setsPerPixel;
+        const int count = static_cast<int>(pixels_.size()), sets = world_.cones.settings.set.setsPerPixel;
         std::vector<Mat3> bases;
         for (int k = 0; k < count; ++k) {
             const Receiver& receiver = receivers_[std::size_t(k)];
@@ -146,13 +151,15 @@ class TileBatch {
                         const int rotation = (receivers_[std::size_t(k)].rotation + s * kRotations / sets) % kRotations;
                         cones_->setDirection(k, bases[std::size_t(k)] * plan_.cones.rotation(rotation)[std::size_t(c)]);
                     }
-                    march_(opacity_, world_, plan_.ringSchedules[r], *cones_, *scratch_, *result_, counts);
+                    march_(world_, plan_.ringSchedules[r], *cones_, *scratch_, *result_, counts);
                     for (int k = 0; k < count; ++k) {
                         const Vec3 radiance = radianceOf(k);
                         PixelGather& sum = sums[std::size_t(k)];
                         sum.irradiance += ring.weight * radiance;
                         sum.opacity += ring.weight * result_->opacity[k];
-                        if (to.record) to.record->diffuse[std::size_t(cone) * gbuffer_.position.texels.size() + pixels_[std::size_t(k)]] = Vec4(radiance, result_->opacity[k]);
+                        if (to.record)
+                            to.record->diffuse[std::size_t(cone) * gbuffer_.position.texels.size() + pixels_[std::size_t(k)]] =
+                                Vec4(radiance, result_->opacity[k]);
                     }
                 }
             }
@@ -184,7 +191,7 @@ class TileBatch {
                 cones_->setDirection(cone, glm::normalize(mirrors[k]));
             }
             cones_->count = static_cast<int>(end - begin);
-            march_(opacity_, world_, *waiting[begin].first, *cones_, *scratch_, *result_, counts);
+            march_(world_, *waiting[begin].first, *cones_, *scratch_, *result_, counts);
             for (std::size_t i = begin; i < end; ++i) {
                 const int cone = static_cast<int>(i - begin);
                 const std::size_t pixel = pixels_[waiting[i].second];
@@ -197,23 +204,26 @@ class TileBatch {
     Vec3 radianceOf(int cone) const { return {result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]}; }
 
     const GBuffer& gbuffer_;
-    const ConeWorld& world_;
+    const BatchWorld& world_;
     const GatherPlan& plan_;
     const MarchBatch march_;
-    const OpacityView& opacity_;
     std::vector<std::size_t> pixels_;  ///< covered ones of the tile; any order will do, a stage packs away what it rules out
     std::vector<Receiver> receivers_;
-    std::unique_ptr<ConeBatch> cones_ = std::make_unique<ConeBatch>();
-    std::unique_ptr<MarchBatchScratch> scratch_ = std::make_unique<MarchBatchScratch>();
-    std::unique_ptr<ConeBatchResult> result_ = std::make_unique<ConeBatchResult>();
+    std::unique_ptr<ConeBatch> cones_ = std::make_unique_for_overwrite<ConeBatch>();
+    std::unique_ptr<MarchBatchScratch> scratch_ = std::make_unique_for_overwrite<MarchBatchScratch>();
+    std::unique_ptr<ConeBatchResult> result_ = std::make_unique_for_overwrite<ConeBatchResult>();
 };
 
 /// `slab`: tile by tile at the widest that the machine has.
 void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
 {
-    const OpacityView opacity(world.opacity, world.settings.march.filterFraction);
+    const BatchWorld batchWorld(world);
     const MarchBatch march = marchSlabBatch(lanes);
-    forTiles(gbuffer, out, [&](int tileX, int tileY, ConeCounts& counts) { TileBatch(gbuffer, world, plan, march, opacity).gather(camera, tileX, tileY, out, counts); });
+    forTiles(gbuffer, out, [&] {
+        return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
+            batch.gather(camera, tileX, tileY, out, counts);
+        };
+    });
 }
 
 }  // namespace

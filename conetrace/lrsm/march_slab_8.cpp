@@ -32,10 +32,10 @@ namespace {
 #include "conetrace/lrsm/march_slab_lanes.inc"
 }  // namespace
 
-void marchSlabBatch(const OpacityView& opacity, const ConeWorld& world, const MarchSchedule& schedule, const ConeBatch& cones, MarchBatchScratch& scratch,
-                    ConeBatchResult& result, ConeCounts& counts)
+void marchSlabBatch(const BatchWorld& world, const MarchSchedule& schedule, const ConeBatch& cones, MarchBatchScratch& scratch, ConeBatchResult& result,
+                    ConeCounts& counts)
 {
-    marchSlab(opacity, world, schedule, cones, scratch, result, counts);
+    marchSlab(world, schedule, cones, scratch, result, counts);
 }
 
 }  // namespace lrsm::lanes8

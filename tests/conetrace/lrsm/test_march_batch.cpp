@@ -112,21 +112,24 @@ void holdBatch(const BatchCase& c, std::uint32_t seed)
     }
     const NormalCdf phi(c.cones.gather.gaussian, c.cones.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = c.cones, .phi = phi};
-    const OpacityView view(opacity, c.cones.march.filterFraction);
+    const BatchWorld batchWorld(world);
     const MarchSchedule schedule = makeSchedule(c.cones, 0.4f, 1.74f * float(c.resolution));
 
     for (const int count : {1, 5, 17, 100}) {
         const auto cones = randomCones(grid, count, random);
         std::vector<ConeResult> expected;
         ConeCounts expectedCounts;
+        int litCones = 0;
         for (const ConeRay& ray : cones->rays) expected.push_back(scalar(world, ray, schedule, expectedCounts));
+        for (const ConeResult& cone : expected) litCones += cone.radiance != Vec3(0.0f);
+        if (count == 100 && c.resolution >= 16 && c.lights > 0) CHECK(litCones > 20);
         for (const int lanes : laneWidths()) {
             CAPTURE(count, lanes);
             const auto scratch = std::make_unique<MarchBatchScratch>();
             const auto result = std::make_unique<ConeBatchResult>();
             std::memset(result.get(), 0x7f, sizeof *result);
             ConeCounts counts;
-            marchSlabBatch(lanes)(view, world, schedule, cones->batch, *scratch, *result, counts);
+            marchSlabBatch(lanes)(batchWorld, schedule, cones->batch, *scratch, *result, counts);
             for (int k = 0; k < count; ++k) {
                 CAPTURE(k);
                 const ConeResult& e = expected[std::size_t(k)];
