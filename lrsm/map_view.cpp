@@ -15,9 +15,7 @@ constexpr std::size_t kRowsPerTask = 16;  ///< of texels, a task
 /// Octants, a byte each, of which some direction may be faced by this normal: all but those whose signs are the normal's own.
 std::uint64_t octantsFaced(const float (&normal)[4])
 {
-    const auto agree = [](float component, std::uint64_t positive) {
-        return (component >= 0.0f ? positive : 0) | (component <= 0.0f ? ~positive : 0);
-    };
+    const auto agree = [](float component, std::uint64_t positive) { return (component >= 0.0f ? positive : 0) | (component <= 0.0f ? ~positive : 0); };
     return ~(agree(normal[0], 0x00ff00ff00ff00ffull) & agree(normal[1], 0x0000ffff0000ffffull) & agree(normal[2], 0x00000000ffffffffull));
 }
 
@@ -42,7 +40,8 @@ FacingTexels texelsOf(const Lrsm& lrsm, int lod, int firstLayer, int layers, con
         }
         // A lookup between two levels asks the coarser one for both.
         for (int y = int(begin); y < int(end) && lod > 0; ++y)
-            for (int x = 0; x < n; ++x) out.at(x, y) |= finer.at(2 * x, 2 * y) | finer.at(2 * x + 1, 2 * y) | finer.at(2 * x, 2 * y + 1) | finer.at(2 * x + 1, 2 * y + 1);
+            for (int x = 0; x < n; ++x)
+                out.at(x, y) |= finer.at(2 * x, 2 * y) | finer.at(2 * x + 1, 2 * y) | finer.at(2 * x, 2 * y + 1) | finer.at(2 * x + 1, 2 * y + 1);
     });
     return out;
 }
@@ -53,7 +52,8 @@ void fillCells(std::uint64_t* cells, const FacingTexels& texels)
     parallelFor(std::size_t(edge), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < edge; ++x)
-                cells[std::size_t(y) * std::size_t(edge) + std::size_t(x)] = texels.at(x - 1, y - 1) | texels.at(x, y - 1) | texels.at(x - 1, y) | texels.at(x, y);
+                cells[std::size_t(y) * std::size_t(edge) + std::size_t(x)] =
+                    texels.at(x - 1, y - 1) | texels.at(x, y - 1) | texels.at(x - 1, y) | texels.at(x, y);
     });
 }
 
