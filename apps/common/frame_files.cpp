@@ -1,10 +1,12 @@
 #include "apps/common/frame_files.h"
 
 #include "apps/common/describe.h"
+#include "core/base/parallel.h"
 #include "core/imageio/image_io.h"
 #include "core/settings/settings_table.h"
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -101,18 +103,28 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
 void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& record, const Json& json)
 {
     const float stops = exposureOf(frame, record);
-    const auto png = [&](const std::string& name, const Image<Rgb8>& picture) { folder.write(name + ".png", encodePng(picture)); };
-
-    folder.write("image.exr", encodeExr(layersOf(frame, json)));
-    png("image", tonemap(frame.combined, stops));
-    png("direct", tonemap(frame.direct, stops));
-    png("irradiance", tonemap(onWhite(frame.irradiance), stops));
-    png("indirect.diffuse", tonemap(frame.indirectDiffuse, stops));
-    png("indirect.specular", tonemap(frame.indirectSpecular, stops));
-    png("albedo", tonemap(frame.gbuffer.albedo, 0.0f));
-    png("normal", normalColor(frame.gbuffer.normal));
-    png("depth", depthPicture(frame.gbuffer.depthLinear));
-    png("opacity", falseColor(frame.opacity, 0.0f, 1.0f));
+    struct File {
+        const char* name;
+        std::function<std::vector<std::byte>()> encode;
+    };
+    const auto png = [](const char* name, auto picture) { return File{name, [=] { return encodePng(picture()); }}; };
+    const File files[] = {
+        {"image.exr", [&] { return encodeExr(layersOf(frame, json)); }},
+        png("image.png", [&] { return tonemap(frame.combined, stops); }),
+        png("direct.png", [&] { return tonemap(frame.direct, stops); }),
+        png("irradiance.png", [&] { return tonemap(onWhite(frame.irradiance), stops); }),
+        png("indirect.diffuse.png", [&] { return tonemap(frame.indirectDiffuse, stops); }),
+        png("indirect.specular.png", [&] { return tonemap(frame.indirectSpecular, stops); }),
+        png("albedo.png", [&] { return tonemap(frame.gbuffer.albedo, 0.0f); }),
+        png("normal.png", [&] { return normalColor(frame.gbuffer.normal); }),
+        png("depth.png", [&] { return depthPicture(frame.gbuffer.depthLinear); }),
+        png("opacity.png", [&] { return falseColor(frame.opacity, 0.0f, 1.0f); }),
+    };
+    std::vector<std::vector<std::byte>> encoded(std::size(files));
+    parallelFor(encoded.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) encoded[i] = files[i].encode();
+    });
+    for (std::size_t i = 0; i < encoded.size(); ++i) folder.write(files[i].name, encoded[i]);
     folder.write("frame.json", jsonText(json));
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +20,33 @@ float gainOf(float stops)
 {
     return static_cast<float>(exp2Exact(std::clamp(double(stops), -120.0, 120.0)));
 }
+
+/// srgb8FromLinear for whole pictures: the same codes, by the least value of each.
+class SrgbEncoder {
+  public:
+    SrgbEncoder()
+    {
+        // Codes grow with the value, and positive floats with their bits: bisect the bits.
+        for (std::size_t code = 1; code < least_.size(); ++code) {
+            std::uint32_t below = 0, reached = std::bit_cast<std::uint32_t>(1.0f);
+            while (reached - below > 1) {
+                const std::uint32_t middle = below + (reached - below) / 2;
+                (srgb8FromLinear(std::bit_cast<float>(middle)) >= code ? reached : below) = middle;
+            }
+            least_[code] = std::bit_cast<float>(reached);
+        }
+    }
+    std::uint8_t operator()(float linear) const
+    {
+        std::size_t code = 0;  // the last whose least value is not above `linear`
+        for (std::size_t step = least_.size() / 2; step > 0; step /= 2)
+            if (least_[code + step] <= linear) code += step;
+        return static_cast<std::uint8_t>(code);
+    }
+
+  private:
+    std::array<float, 256> least_{};
+};
 
 /// Piecewise linear through equally spaced sRGB colours; t in [0, 1].
 Rgb8 ramp(std::span<const std::array<float, 3>> colors, float t)
@@ -81,9 +110,10 @@ Image<Vec3> exposed(const Image<Vec3>& picture, float stops)
 Image<Rgb8> tonemap(const Image<Vec3>& picture, float stops)
 {
     const float gain = gainOf(stops);
+    const SrgbEncoder codeOf;
     return convertEach(picture, [&](const Vec3& color) {
         if (!isFinite(color)) return kMagenta;
-        const auto encode = [&](float value) { return srgb8FromLinear(std::clamp(value * gain, 0.0f, 1.0f)); };
+        const auto encode = [&](float value) { return codeOf(std::clamp(value * gain, 0.0f, 1.0f)); };
         return Rgb8{encode(color.x), encode(color.y), encode(color.z)};
     });
 }

@@ -155,7 +155,8 @@ std::vector<std::byte> encodeExr(const LayeredImage& image)
     for (const ImageLayer& layer : image.layers)
         for (const std::string& channel : layer.channelNames) spec.channelnames.push_back(layer.name.empty() ? channel : layer.name + "." + channel);
     spec.nchannels = static_cast<int>(spec.channelnames.size());
-    spec.attribute("compression", "zip");
+    // 29 float channels of 1280x720: a third of the time of zip, for 1.4 times the bytes.
+    spec.attribute("compression", "rle");
     spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the library writes the time of day
     for (const auto& [key, value] : image.metadata) spec.attribute(key, value);
 

@@ -1,3 +1,4 @@
+#include "core/base/formats.h"
 #include "core/imageio/image_io.h"
 
 #include "core/base/errors.h"
@@ -42,6 +43,17 @@ LayeredImage someImage()
 }
 
 }  // namespace
+
+TEST_CASE("a tonemapped picture has the codes of srgb8FromLinear", "[imageio]")
+{
+    // A prime stride through the floats up to 1.
+    std::vector<float> values;
+    for (std::uint32_t bits = 0; bits <= std::bit_cast<std::uint32_t>(1.0f); bits += 20011) values.push_back(std::bit_cast<float>(bits));
+    Image<Vec3> picture(static_cast<int>(values.size()), 1);
+    for (std::size_t i = 0; i < values.size(); ++i) picture.texels[i] = Vec3(values[i], 1.0f, -1.0f);
+    const Image<Rgb8> codes = tonemap(picture, 0.0f);
+    for (std::size_t i = 0; i < values.size(); ++i) REQUIRE(codes.texels[i] == Rgb8{srgb8FromLinear(values[i]), 255, 0});
+}
 
 TEST_CASE("EXR: layers, channel names, metadata and every bit come back", "[imageio]")
 {
