@@ -8,7 +8,8 @@ TEST_CASE("Lists are joined and split", "[text]")
 {
     CHECK(joined(std::vector<std::string>{}) == "");
     CHECK(joined(std::vector<std::string>{"a", "", "c"}) == "a, , c");
-    CHECK(joined(std::vector<int>{1, 2}, [](int i) { return std::to_string(10 * i); }, " | ") == "10 | 20");
+    CHECK(joined(
+              std::vector<int>{1, 2}, [](int i) { return std::to_string(10 * i); }, " | ") == "10 | 20");
     CHECK(split("a, , c", ", ") == std::vector<std::string>{"a", "", "c"});
     CHECK(split("a", ",") == std::vector<std::string>{"a"});
     CHECK(split("", ",") == std::vector<std::string>{""});

@@ -1,4 +1,5 @@
 // docs/equations.md against the program: constants, bounds and domains cannot drift apart.
+#include "core/base/text.h"
 #include "core/report/table.h"
 #include "core/settings/settings.h"
 #include "quick_report.h"
@@ -41,10 +42,7 @@ bool isExact(const EquationCheck& check)
 std::string equationsMarkdown(const EquationReport& report)
 {
     // A | inside a cell must be escaped.
-    const auto cell = [](std::string text) {
-        for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-        return text;
-    };
+    const auto cell = [](const std::string& text) { return joined(split(text, "|"), std::identity(), "\\|"); };
     std::string table = "| equation | function | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- |\n", exact;
     for (const EquationCheck& check : report.checks)
         if (isExact(check))
