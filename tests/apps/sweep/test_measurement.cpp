@@ -65,7 +65,7 @@ TEST_CASE("a row reads back from its JSON to the same text, every number to the 
     CHECK(again.passes[2].time.min == 2.0 / 7.0);
 }
 
-TEST_CASE("the path tracer's row has no settings and no passes; what is not finite is null and reads back as NaN", "[sweep]")
+TEST_CASE("the path tracer's row has no settings and no passes, what is not finite is null and reads back as NaN", "[sweep]")
 {
     Measurement row;
     row.kind = RowKind::pathTracer;
@@ -82,7 +82,7 @@ TEST_CASE("the path tracer's row has no settings and no passes; what is not fini
     CHECK(measurementJson(again).dump() == json.dump());
 }
 
-TEST_CASE("a row's columns: what every row has, its passes and counters whatever they are, the settings; no name twice", "[sweep]")
+TEST_CASE("a row's columns: what every row has, its passes and counters whatever they are, the settings, no name twice", "[sweep]")
 {
     const Measurement row = fullRow();
     const Json flat = measurementColumns(row), json = measurementJson(row);
