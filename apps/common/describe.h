@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/counters.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
 
@@ -13,6 +14,8 @@ namespace lrsm {
 std::string jsonText(const nlohmann::ordered_json& json);
 
 nlohmann::ordered_json vectorJson(const Vec3& v);
+/// Whole numbers without a point; null where a value is not finite.
+nlohmann::ordered_json countersJson(const Counters& counters);
 /// The field of view in degrees is for people (vertical_fov_degrees); in radians it is the camera's to the last bit (vertical_fov).
 enum class Angle { degrees, radians };
 nlohmann::ordered_json cameraJson(const Camera& camera, Angle angle = Angle::degrees);
