@@ -193,8 +193,12 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&L::halfRounding>({"layer_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, rounding));
 
     rows.push_back(
-        choice<&D::shadows>({"shadows", "", "RSM depth comparison; shadow cones through the voxels; or none", "paper Table 3: cone"}, {"hard", "cone", "off"}));
-    rows.push_back(real<&D::depthBiasTexels>({"depth_bias_texels", "RSM texels", "slope-scaled bias of hard shadows", "ours"}, {0, 1000}));
+        choice<&D::shadows>({"shadows", "", "a shadow ray a pixel; depth map, one texel or a mean; cones through the voxels; or none", "paper Table 3: cone"},
+                            {"exact", "hard", "pcf", "cone", "off"}));
+    rows.push_back(whole<&D::shadowResolution>(
+        {"shadow_resolution", "RSM resolutions", "of the depth map of hard and pcf; 1: the RSM's own depth", "ours"}, powersOfTwo(1, 4)));
+    rows.push_back(real<&D::depthBiasTexels>({"depth_bias_texels", "map texels", "hard, pcf: slope-scaled bias besides the receiver's plane", "ours"}, {0, 1000}));
+    rows.push_back(real<&D::pcfWidthTexels>({"pcf_width_texels", "map texels", "pcf: edge of the square averaged; 1 is bilinear", "ours"}, {1, 16}));
     rows.push_back(real<&D::shadowConeApertureDegrees>({"shadow_cone_aperture_degrees", "degrees", "full aperture of a shadow cone", "ours"}, above(0, 90)));
 }
 
