@@ -33,13 +33,19 @@ World buildWorld(const Scene& scene, const Requirements& needs, const Settings& 
     if (reads.bits || mips) world.opacity.base = log.run("voxelize", mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, settings.voxel); });
     if (mips) world.opacity = log.run("voxel mips", kWorldPass, [&] { return buildPyramid(std::move(world.opacity.base), settings.voxel); });
     for (const Light& light : scene.lights)
-        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass, [&] { return renderRsm(scene, light, needs, settings.rsm); }));
+        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass,
+                                     [&] { return renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter); }));
     if (!hasShadowMaps(settings.direct)) return world;
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         world.shadowMaps.push_back(log.run("shadow " + std::to_string(i), kWorldPass, [&] {
             return renderDepthMap(scene, scene.lights[i], needs, refine(world.rsms[i].projection, settings.direct.shadowResolution));
         }));
     return world;
+}
+
+GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& options)
+{
+    return {options.width, options.height, settings.surface.textureFilter};
 }
 
 /// From gathered light to the picture.
@@ -100,9 +106,9 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
     const World world = buildWorld(scene, needs, settings, method.reads, log);
 
     // What the eye sees, and its direct light.
-    frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
-    frame.direct =
-        log.run("direct", kPicturePass, [&] { return traceDirect(frame.gbuffer, scene, camera, world.depths(), &world.opacity, needs, settings.direct).radiance; });
+    frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, gbufferSettings(settings, options)); });
+    frame.direct = log.run("direct", kPicturePass,
+                           [&] { return traceDirect(frame.gbuffer, scene, camera, world.depths(), &world.opacity, needs, settings.direct).radiance; });
 
     // Indirect light, by the chosen method, and the picture.
     Gathered light = method.gather({scene, camera, needs, settings, frame.gbuffer, world.rsms, world.opacity}, log);
@@ -119,7 +125,7 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
     const PassWatch nobody{.hashPasses = false, .progress = {}, .observe = {}};
     PassLog log(nobody);
     const World world = buildWorld(scene, needs, settings, method.reads, log);
-    const GBuffer gbuffer = renderGBuffer(scene, camera, needs, {options.width, options.height});
+    const GBuffer gbuffer = renderGBuffer(scene, camera, needs, gbufferSettings(settings, options));
     return method.explain({scene, camera, needs, settings, gbuffer, world.rsms, world.opacity}, x, y);
 }
 

@@ -64,8 +64,8 @@ void printSummary(const Capture& capture, std::size_t bytes, const std::string& 
 Settings capturedSettings(const Options& options)
 {
     Settings settings = chosenSettings(options);
-    const bool chosen = !options.settingsFile.empty() ||
-                        std::any_of(options.assignments.begin(), options.assignments.end(), [](const std::string& text) { return text.starts_with("shadows="); });
+    const bool chosen = !options.settingsFile.empty() || std::any_of(options.assignments.begin(), options.assignments.end(),
+                                                                     [](const std::string& text) { return text.starts_with("shadows="); });
     if (settings.direct.shadows == Shadows::exact && !chosen) settings.direct.shadows = Shadows::hard;
     return settings;
 }
@@ -110,7 +110,8 @@ int run(const Options& options)
 
 Command addCapture(CLI::App& program)
 {
-    CLI::App* parser = program.add_subcommand("capture", "Write every pass's output, bit for bit, to hold another implementation against (docs/capture.md); shadows=hard unless chosen");
+    CLI::App* parser = program.add_subcommand(
+        "capture", "Write every pass's output, bit for bit, to hold another implementation against (docs/capture.md); shadows=hard unless chosen");
     const auto options = std::make_shared<Options>();
     addSceneOptions(*parser, *options);
     addSettingOptions(*parser, *options);

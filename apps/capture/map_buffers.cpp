@@ -111,8 +111,8 @@ void describeShadow(Catalogue& out, const DescribedFrame& frame, std::size_t lig
 {
     if (!hasShadowMaps(frame.settings.direct)) return;
     const int n = frame.settings.rsm.resolution * frame.settings.direct.shadowResolution;
-    Buffer& buffer = out.picture(shadowName(light), n, n, {}, {"linear depth as the RSM's, in the same frustum; 1 where empty", "light's map", ""},
-                                 tolerances::mapDepth(n));
+    Buffer& buffer =
+        out.picture(shadowName(light), n, n, {}, {"linear depth as the RSM's, in the same frustum; 1 where empty", "light's map", ""}, tolerances::mapDepth(n));
     buffer.dds = DdsPlace{stemOf(buffer.name) + ".dds", 0, TexelFormat{}.dds, false};
 }
 

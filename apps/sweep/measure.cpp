@@ -155,6 +155,7 @@ Settings Calibration::settings()
 {
     Settings s;
     s.method = Method::lrsm;
+    s.surface = {.textureFilter = TextureFilter::trilinear};
     s.voxel = {.resolution = 128, .mode = Voxelization::thin, .mipFilter = MipFilter::mean, .axes = OpacityAxes::directional, .storage = Storage::gpu};
     s.rsm = {.resolution = 256, .storage = Storage::gpu, .halfRounding = HalfRounding::d3d};
     s.layers = {.depthLayers = 2,

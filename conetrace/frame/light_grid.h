@@ -45,8 +45,14 @@ class LightView {
 struct Polygon {
     std::array<DVec2, 4> corners;
     int count = 0;
-    DVec2 min() const { return bound([](double a, double b) { return std::min(a, b); }); }
-    DVec2 max() const { return bound([](double a, double b) { return std::max(a, b); }); }
+    DVec2 min() const
+    {
+        return bound([](double a, double b) { return std::min(a, b); });
+    }
+    DVec2 max() const
+    {
+        return bound([](double a, double b) { return std::max(a, b); });
+    }
 
   private:
     template <class Pick>

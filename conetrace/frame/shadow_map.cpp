@@ -5,7 +5,8 @@
 namespace lrsm {
 namespace {
 
-constexpr float kDepthRounding = 0x1p-21f;  // depth is stored in float32 over the range: a few of its roundings are no occluder
+constexpr float kDepthRounding = 0x1p-21f;  // of the range, where depth is stored in float32 ...
+constexpr float kPlaceRounding = 0x1p-21f;  // ... and of the distance that it is worked out from: a few roundings are no occluder
 
 /// The plane of one receiver as the texels of a map see it.
 class ReceiverPlane {
@@ -19,11 +20,11 @@ class ReceiverPlane {
           y_(p.v * float(projection.resolution)),
           depth_(p.depth),
           texelSize_(p.texelSize / projection.depthRange()),
-          biasTexels_(biasTexels)
+          biasTexels_(biasTexels),
+          distance_(projection.type == LightType::directional ? projection.halfWidth : depth_ * projection.depthRange() + projection.depthNear)
     {
         if (q_.type == LightType::directional) return;
         const Vec3 ray = rayThrough(x_, y_);
-        distance_ = depth_ * q_.depthRange() + q_.depthNear;
         cosine_ = glm::dot(normal_, ray) / glm::length(ray);
     }
 
@@ -59,9 +60,10 @@ class ReceiverPlane {
 
     bool nearer(float stored, float plane, float cosine) const
     {
+        const float rounding = kDepthRounding + kPlaceRounding * distance_ / q_.depthRange();
         const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
         const float bias = texelSize_ * (biasTexels_ * (std::min(slope, kMaxBiasSlope) + kFlatBias) + kSnappingTexels * slope);
-        return stored + bias + kDepthRounding < plane;
+        return stored + bias + rounding < plane;
     }
 
     const LightProjection& q_;
@@ -70,7 +72,8 @@ class ReceiverPlane {
     float x_, y_, depth_;  ///< of p: texels, and linear depth
     float texelSize_;      ///< linear depth
     float biasTexels_;
-    float distance_ = 0.0f, cosine_ = 0.0f;
+    float distance_;       ///< of p from the light, metres; directional: the map's half width
+    float cosine_ = 0.0f;  ///< between the normal and the light's ray to p: negative
 };
 
 struct Lookup {
@@ -115,7 +118,8 @@ float shadowFromMapFiltered(const DepthMapView& map, const ShadowReceiver& recei
 
     float sum = 0.0f;
     for (int y = static_cast<int>(std::floor(top)); float(y) < bottom; ++y)
-        for (int x = static_cast<int>(std::floor(left)); float(x) < right; ++x) sum += overlap(x, left, right) * overlap(y, top, bottom) * lookup.visibility(x, y);
+        for (int x = static_cast<int>(std::floor(left)); float(x) < right; ++x)
+            sum += overlap(x, left, right) * overlap(y, top, bottom) * lookup.visibility(x, y);
     return std::min(1.0f, sum / (widthTexels * widthTexels));
 }
 

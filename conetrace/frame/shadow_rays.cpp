@@ -9,8 +9,8 @@
 namespace lrsm {
 namespace {
 
-constexpr double kReceiversPerCell = 2.0;      // measured: between 1 and 4 the time hardly changes
-constexpr double kNearestOccluder = 1e-6;      // of the nearest receiver's distance: what is nearer to a light is inside its bulb
+constexpr double kReceiversPerCell = 2.0;  // measured: between 1 and 4 the time hardly changes
+constexpr double kNearestOccluder = 1e-6;  // of the nearest receiver's distance: what is nearer to a light is inside its bulb
 constexpr std::size_t kReceiversPerTask = 4096, kTrianglesPerTask = 4096;
 constexpr int kBands = 64;  // of the grid's rows, a task each
 

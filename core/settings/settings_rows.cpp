@@ -11,7 +11,9 @@ namespace {
 template <class Stage>
 auto& stageIn(auto& settings)
 {
-    if constexpr (std::is_same_v<Stage, VoxelSettings>)
+    if constexpr (std::is_same_v<Stage, SurfaceSettings>)
+        return settings.surface;
+    else if constexpr (std::is_same_v<Stage, VoxelSettings>)
         return settings.voxel;
     else if constexpr (std::is_same_v<Stage, RsmSettings>)
         return settings.rsm;
@@ -34,7 +36,9 @@ auto& stageIn(auto& settings)
 template <class Stage>
 constexpr std::string_view stageName()
 {
-    if constexpr (std::is_same_v<Stage, VoxelSettings>)
+    if constexpr (std::is_same_v<Stage, SurfaceSettings>)
+        return "surface";
+    else if constexpr (std::is_same_v<Stage, VoxelSettings>)
         return "voxel";
     else if constexpr (std::is_same_v<Stage, RsmSettings>)
         return "rsm";
@@ -163,6 +167,9 @@ void addBuildingRows(std::vector<SettingRow>& rows)
 {
     const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"};
 
+    rows.push_back(choice<&SurfaceSettings::textureFilter>(
+        {"texture_filter", "", "of RSM and G-buffer: mips by derivatives, or the base level alone", "D3D11.3 spec 7.18: trilinear"},
+        {"trilinear", "bilinear"}));
     rows.push_back(whole<&V::resolution>({"voxel_resolution", "voxels", "voxels along an edge of the grid", "paper Table 2: 256, 512"}, powersOfTwo(1, 2048)));
     rows.push_back(
         choice<&V::mode>({"voxelization", "", "exact box overlap; 6-separating; or sampled along the dominant axis (has holes)", "paper Sec. 3.2: raster"},
@@ -195,10 +202,11 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(
         choice<&D::shadows>({"shadows", "", "a shadow ray a pixel; depth map, one texel or a mean; cones through the voxels; or none", "paper Table 3: cone"},
                             {"exact", "hard", "pcf", "cone", "off"}));
-    rows.push_back(whole<&D::shadowResolution>(
-        {"shadow_resolution", "RSM resolutions", "of the depth map of hard and pcf; 1: the RSM's own depth", "ours"}, powersOfTwo(1, 4)));
-    rows.push_back(real<&D::depthBiasTexels>({"depth_bias_texels", "map texels", "hard, pcf: slope-scaled bias besides the receiver's plane", "ours"}, {0, 1000}));
-    rows.push_back(real<&D::pcfWidthTexels>({"pcf_width_texels", "map texels", "pcf: edge of the square averaged; 1 is bilinear", "ours"}, {1, 16}));
+    rows.push_back(whole<&D::shadowResolution>({"shadow_resolution", "RSM resolutions", "of the depth map of hard and pcf; 1: the RSM's own depth", "ours"},
+                                               powersOfTwo(1, 4)));
+    rows.push_back(
+        real<&D::depthBiasTexels>({"depth_bias_texels", "map texels", "hard, pcf: slope-scaled bias besides the receiver's plane", "ours"}, {0, 1000}));
+    rows.push_back(real<&D::pcfWidthTexels>({"pcf_width_texels", "map texels", "pcf: edge of the square averaged; 1 is bilinear", "ours"}, above(0, 16)));
     rows.push_back(real<&D::shadowConeApertureDegrees>({"shadow_cone_aperture_degrees", "degrees", "full aperture of a shadow cone", "ours"}, above(0, 90)));
 }
 

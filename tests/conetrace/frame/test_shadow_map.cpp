@@ -52,7 +52,8 @@ TEST_CASE("shadow maps: no convex surface shadows itself, at any angle, size and
             updateBounds(scene);
             const Vec3 from = glm::normalize(Vec3(std::sin(slant), std::cos(slant), 0.3f * std::sin(slant)));
             const float halfAngle = std::min(1.2f, 2.0f / std::max(distance, 1.0f));
-            const Light light = distance == 0.0f ? directionalLight(-from, Vec3(1)) : spotLight(from * (distance * size), {0, 0, 0}, Vec3(1), halfAngle, halfAngle);
+            const Light light =
+                distance == 0.0f ? directionalLight(-from, Vec3(1)) : spotLight(from * (distance * size), {0, 0, 0}, Vec3(1), halfAngle, halfAngle);
             RsmSettings settings;
             settings.resolution = 64;
             const Rsm rsm = renderRsm(scene, light, kDirectNeeds, settings);
@@ -136,7 +137,8 @@ TEST_CASE("percentage-closer filtering: the mean of hard shadows over the square
         for (int sy = 0; sy < kSteps; ++sy)
             for (int sx = 0; sx < kSteps; ++sx) {
                 // Moved across the light's axis, then along it back to the floor.
-                const Vec3 across = q.right * (texel * width * ((float(sx) + 0.5f) / kSteps - 0.5f)) + q.up * (texel * width * ((float(sy) + 0.5f) / kSteps - 0.5f));
+                const Vec3 across =
+                    q.right * (texel * width * ((float(sx) + 0.5f) / kSteps - 0.5f)) + q.up * (texel * width * ((float(sy) + 0.5f) / kSteps - 0.5f));
                 const Vec3 moved = p.position + across - q.forward * (across.y / q.forward.y);
                 sum += double(shadowFromMap(map, {moved, p.geometricNormal}, kBiasTexels));
             }

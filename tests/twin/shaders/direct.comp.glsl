@@ -35,7 +35,8 @@ float texelShadow(int index, ivec2 texel, LightSpacePoint p, vec3 nGeometric)
     }
     if (cosine < grazingCosine) return 1.0;
     float slope = sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
-    float bias = texelSize / range * (depthBiasTexels * (min(slope, maxBiasSlope) + flatBias) + snappingTexels * slope) + 1.0 / 2097152.0;
+    float bias = texelSize / range * (depthBiasTexels * (min(slope, maxBiasSlope) + flatBias) + snappingTexels * slope);
+    bias += (1.0 + (light.position.w == 0.0 ? light.right.w : p.depth * range + light.up.w) / range) / 2097152.0;
 #ifdef PLANT_shadow_bias
     bias = 0.0;
     plane = p.depth;
