@@ -46,7 +46,7 @@ struct Shadowing {
     const OpacityPyramid* opacity;
     const DirectSettings& settings;
     float tanHalfAperture = 0.0f;
-    std::vector<Image<std::uint8_t>> rays = {};  ///< a light
+    std::vector<Image<std::uint8_t>> rays;  ///< a light
 
     float visibility(std::size_t light, std::size_t pixel, const Surface& surface, const LightSample& sample) const
     {
@@ -102,7 +102,7 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
     assert(!readsDepthMaps(settings) || maps.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
-    Shadowing shadowing{maps, opacity, settings, static_cast<float>(tangent(halfAperture))};
+    Shadowing shadowing{.maps = maps, .opacity = opacity, .settings = settings, .tanHalfAperture = static_cast<float>(tangent(halfAperture)), .rays = {}};
     if (settings.shadows == Shadows::exact)
         for (const Light& light : scene.lights) shadowing.rays.push_back(traceShadowRays(scene, gbuffer, light, needs));
 
