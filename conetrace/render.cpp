@@ -17,6 +17,13 @@ namespace {
 struct World {
     OpacityPyramid opacity;
     std::vector<Rsm> rsms;
+    std::vector<DepthMap> shadowMaps;  ///< where shadows are compared with finer depths than the RSMs'
+
+    std::vector<DepthMapView> depths() const
+    {
+        if (!shadowMaps.empty()) return {shadowMaps.begin(), shadowMaps.end()};
+        return {rsms.begin(), rsms.end()};
+    }
 };
 
 World buildWorld(const Scene& scene, const Requirements& needs, const Settings& settings, const WorldReads& reads, PassLog& log)
@@ -26,8 +33,19 @@ World buildWorld(const Scene& scene, const Requirements& needs, const Settings& 
     if (reads.bits || mips) world.opacity.base = log.run("voxelize", mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, settings.voxel); });
     if (mips) world.opacity = log.run("voxel mips", kWorldPass, [&] { return buildPyramid(std::move(world.opacity.base), settings.voxel); });
     for (const Light& light : scene.lights)
-        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass, [&] { return renderRsm(scene, light, needs, settings.rsm); }));
+        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass,
+                                     [&] { return renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter); }));
+    if (!hasShadowMaps(settings.direct)) return world;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        world.shadowMaps.push_back(log.run("shadow " + std::to_string(i), kWorldPass, [&] {
+            return renderDepthMap(scene, scene.lights[i], needs, refine(world.rsms[i].projection, settings.direct.shadowResolution));
+        }));
     return world;
+}
+
+GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& options)
+{
+    return {options.width, options.height, settings.surface.textureFilter};
 }
 
 /// From gathered light to the picture.
@@ -88,9 +106,9 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
     const World world = buildWorld(scene, needs, settings, method.reads, log);
 
     // What the eye sees, and its direct light.
-    frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, {options.width, options.height}); });
-    frame.direct =
-        log.run("direct", kPicturePass, [&] { return traceDirect(frame.gbuffer, scene, camera, world.rsms, &world.opacity, needs, settings.direct).radiance; });
+    frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, gbufferSettings(settings, options)); });
+    frame.direct = log.run("direct", kPicturePass,
+                           [&] { return traceDirect(frame.gbuffer, scene, camera, world.depths(), &world.opacity, needs, settings.direct).radiance; });
 
     // Indirect light, by the chosen method, and the picture.
     Gathered light = method.gather({.scene = scene,
@@ -115,7 +133,7 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
     const PassWatch nobody{.hashPasses = false, .progress = {}, .observe = {}};
     PassLog log(nobody);
     const World world = buildWorld(scene, needs, settings, method.reads, log);
-    const GBuffer gbuffer = renderGBuffer(scene, camera, needs, {options.width, options.height});
+    const GBuffer gbuffer = renderGBuffer(scene, camera, needs, gbufferSettings(settings, options));
     return method.explain(
         {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = gbuffer, .rsms = world.rsms, .opacity = world.opacity}, x, y);
 }
@@ -127,6 +145,8 @@ std::vector<MemoryRow> predictMemory(const MemoryQuestion& question)
     std::vector<MemoryRow> rows = predictVoxels(settings.voxel, method.reads.bits, method.reads.mips || settings.direct.shadows == Shadows::cone);
     const std::vector<MemoryRow> maps = predictRsms(settings.rsm, question.scene.lights.size());
     rows.insert(rows.end(), maps.begin(), maps.end());
+    const std::vector<MemoryRow> shadows = predictShadowMaps(settings, question.scene.lights.size());
+    rows.insert(rows.end(), shadows.begin(), shadows.end());
     if (method.predict) {
         const std::vector<MemoryRow> own = method.predict(question);
         rows.insert(rows.end(), own.begin(), own.end());

@@ -20,10 +20,12 @@ struct ShadedTexel {
 };
 
 /// Reflected radiance of a diffuse surface lit by the light alone: rho L_d <n.l> / pi.
-ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const LightProjection& projection, const SurfaceHit& hit)
+ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const LightProjection& projection, const SurfaceHit& hit, TextureFilter filter)
 {
-    const Vec3 toLight = directionToLight(projection, positionOf(scene, hit));
-    const Surface surface = evaluateSurface(scene, hit, toLight);
+    const Vec3 pWorld = positionOf(scene, hit), toLight = directionToLight(projection, pWorld);
+    const LightSpacePoint place = projectToLight(projection, pWorld);
+    const PixelSpacing spacing{projection.right * place.texelSize, -projection.up * place.texelSize};
+    const Surface surface = evaluateSurface(scene, hit, toLight, filter == TextureFilter::trilinear ? &spacing : nullptr);
     const float nDotL = glm::clamp(glm::dot(surface.normal, toLight), 0.0f, 1.0f);
 
     ShadedTexel shaded;
@@ -31,7 +33,7 @@ ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const Ligh
     shaded.texel.coverage = 1.0f;
     shaded.texel.normal = surface.normal;
     shaded.texel.nDotL = nDotL;
-    shaded.depth = glm::clamp(projectToLight(projection, surface.position).depth, 0.0f, 1.0f);
+    shaded.depth = glm::clamp(place.depth, 0.0f, 1.0f);
     return shaded;
 }
 
@@ -52,7 +54,7 @@ Counters countersOf(const Rsm& rsm)
     return counters;
 }
 
-Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings)
+Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings, TextureFilter textureFilter)
 {
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)) && settings.resolution >= 2);
     checkBounds(scene.bounds);
@@ -76,7 +78,7 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
         for (std::size_t i = begin; i < end; ++i) {
             const Fragment& fragment = drawn.fragments.texels[i];
             if (fragment.triangle == kNoTriangle) continue;
-            ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hitOf(drawn.firstTriangle, fragment));
+            ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hitOf(drawn.firstTriangle, fragment), textureFilter);
             if (settings.storage == Storage::gpu) toHalf(shaded.texel, settings.halfRounding, counts[begin / kChunk]);
             rsm.texels.texels[i] = shaded.texel;
             rsm.depthLinear.texels[i] = shaded.depth;

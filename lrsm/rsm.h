@@ -52,6 +52,7 @@ inline Vec3 reflectedRadiance(const Vec3& albedo, const Vec3& irradiance, float 
 inline constexpr float kRsmRadianceMaxError = 1e-5f, kRsmDepthMaxError = 3e-6f;
 
 /// Renders the scene from one light (Sec. 3.2, [DS05]).
-Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings);
+Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings,
+              TextureFilter textureFilter = TextureFilter::trilinear);
 
 }  // namespace lrsm

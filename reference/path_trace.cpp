@@ -174,6 +174,7 @@ void PathTracer::shootPrimary(const Camera& camera)
 {
     const int width = settings_.width, height = settings_.height;
     primary_ = {{width, height}, {width, height}, {width, height}, {width, height}, {width, height}};
+    const PixelSpacing spacing = pixelSpacing(camera, height);
     std::mutex countsMutex;
     parallelFor(primary_.covered.texels.size(), kChunkPixels, [&](std::size_t begin, std::size_t end) {
         Tracer tracer(embree_, lights_);
@@ -184,7 +185,8 @@ void PathTracer::shootPrimary(const Camera& camera)
             if (!hit) continue;
             primary_.covered.texels[i] = 1;
             primary_.toEye.texels[i] = -eye.direction;
-            primary_.surface.texels[i] = evaluateSurface(scene_, hit->surface, -eye.direction);
+            const PixelSpacing here = spacingAt(spacing, camera, eye.origin + eye.direction * hit->t);
+            primary_.surface.texels[i] = evaluateSurface(scene_, hit->surface, -eye.direction, &here);
             primary_.depth.texels[i] = glm::dot(primary_.surface.texels[i].position - camera.position, camera.forward);
             primary_.direct.texels[i] = directLight(tracer, primary_.surface.texels[i], -eye.direction);
         }

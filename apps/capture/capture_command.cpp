@@ -11,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -59,10 +60,20 @@ void printSummary(const Capture& capture, std::size_t bytes, const std::string& 
     std::cout << where << ": " << capture.buffers.size() << " buffers, " << megabytes(bytes) << " with their textures; manifest.json says what is what\n";
 }
 
+/// Exact shadows need the scene's triangles, which a candidate's pass has not: a golden capture compares with the RSM's depth unless told otherwise.
+Settings capturedSettings(const Options& options)
+{
+    Settings settings = chosenSettings(options);
+    const bool chosen = !options.settingsFile.empty() || std::any_of(options.assignments.begin(), options.assignments.end(),
+                                                                     [](const std::string& text) { return text.starts_with("shadows="); });
+    if (settings.direct.shadows == Shadows::exact && !chosen) settings.direct.shadows = Shadows::hard;
+    return settings;
+}
+
 int run(const Options& options)
 {
     if (options.output.empty()) throw InputError("capture", "needs -o FOLDER");
-    const Settings settings = chosenSettings(options);
+    const Settings settings = capturedSettings(options);
     const IVec2 size = chosenSize(options);
     OutputFolder folder(options.output);
 
@@ -99,7 +110,8 @@ int run(const Options& options)
 
 Command addCapture(CLI::App& program)
 {
-    CLI::App* parser = program.add_subcommand("capture", "Write every pass's output, bit for bit, to hold another implementation against (docs/capture.md)");
+    CLI::App* parser = program.add_subcommand(
+        "capture", "Write every pass's output, bit for bit, to hold another implementation against (docs/capture.md); shadows=hard unless chosen");
     const auto options = std::make_shared<Options>();
     addSceneOptions(*parser, *options);
     addSettingOptions(*parser, *options);

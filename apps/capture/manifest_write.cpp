@@ -3,6 +3,7 @@
 #include "apps/capture/tables.h"
 #include "apps/common/describe.h"
 #include "conetrace/frame/direct.h"
+#include "conetrace/frame/shadow_map.h"
 #include "core/base/elementary.h"
 #include "core/scene/brdf.h"
 #include "core/settings/settings_table.h"
@@ -174,6 +175,8 @@ Json constantsJson()
             {"variance_floor", kVarianceFloor},
             {"shadow_flat_bias", kFlatBias},
             {"shadow_max_bias_slope", kMaxBiasSlope},
+            {"shadow_snapping_texels", kSnappingTexels},
+            {"shadow_grazing_cosine", kGrazingCosine},
             {"min_specular_alpha", kMinSpecularAlpha}};
 }
 

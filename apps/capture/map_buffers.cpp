@@ -56,6 +56,10 @@ std::string rsmPrefix(std::size_t light)
 {
     return "rsm" + std::to_string(light) + ".";
 }
+std::string shadowName(std::size_t light)
+{
+    return "shadow" + std::to_string(light) + ".depth";
+}
 std::string lrsmName(std::size_t light, const char* texture, int lod)
 {
     return mipName("lrsm" + std::to_string(light) + "." + texture, lod);
@@ -103,6 +107,15 @@ void describeRsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
     map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(n), {});
 }
 
+void describeShadow(Catalogue& out, const DescribedFrame& frame, std::size_t light)
+{
+    if (!hasShadowMaps(frame.settings.direct)) return;
+    const int n = frame.settings.rsm.resolution * frame.settings.direct.shadowResolution;
+    Buffer& buffer =
+        out.picture(shadowName(light), n, n, {}, {"linear depth as the RSM's, in the same frustum; 1 where empty", "light's map", ""}, tolerances::mapDepth(n));
+    buffer.dds = DdsPlace{stemOf(buffer.name) + ".dds", 0, TexelFormat{}.dds, false};
+}
+
 void describeLrsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
 {
     const auto layers = static_cast<std::size_t>(frame.layersStored[light]);
@@ -147,6 +160,23 @@ Rsm rsmFromCapture(const Capture& capture, std::size_t light)
     rsm.depthLinear = Image<float>(n, n);
     rsm.depthLinear.texels = copyFrom<float>(capture, prefix + "depth", Dtype::f4, rsm.texels.texels.size());
     return rsm;
+}
+
+void toBuffers(const DepthMap& map, std::size_t light, std::vector<Buffer>& buffers)
+{
+    copyTo(buffers, shadowName(light), map.depthLinear.texels);
+}
+
+DepthMap depthMapFromCapture(const Capture& capture, std::size_t light)
+{
+    const LightProjection& ofRsm = lightOf(capture, light).projection;
+    const DirectSettings& settings = capture.settings.direct;
+    DepthMap map{refine(ofRsm, settings.shadowResolution), {}, {}};
+    const int n = map.projection.resolution;
+    map.depthLinear = Image<float>(n, n);
+    map.depthLinear.texels =
+        copyFrom<float>(capture, hasShadowMaps(settings) ? shadowName(light) : rsmPrefix(light) + "depth", Dtype::f4, map.depthLinear.texels.size());
+    return map;
 }
 
 void toBuffers(const Lrsm& lrsm, std::size_t light, std::vector<Buffer>& buffers)

@@ -45,6 +45,11 @@ void keepRsm(const PassOutput& output, std::size_t light, Capture& capture)
     toBuffers(*rsm, light, capture.buffers);
 }
 
+void keepShadow(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    if (const auto* map = output.as<DepthMap>()) toBuffers(*map, light, capture.buffers);
+}
+
 void keepLrsm(const PassOutput& output, std::size_t light, Capture& capture)
 {
     const auto* lrsm = output.as<Lrsm>();
@@ -78,7 +83,9 @@ void keepComposite(const Frame& frame, Capture& capture)
 
 Families readForShadows(const Settings& settings)
 {
-    if (settings.direct.shadows == Shadows::hard) return {"rsm"};
+    if (hasShadowMaps(settings.direct)) return {"shadow"};
+    if (readsDepthMaps(settings.direct)) return {"rsm"};
+    if (settings.direct.shadows == Shadows::exact) return {"scene"};
     if (settings.direct.shadows == Shadows::cone) return {"voxelize", "voxel mips"};
     return {};
 }
@@ -99,6 +106,8 @@ const std::vector<PassRow> kRows = {
     {.family = "rsm", .perLight = true, .stage = "rsm", .reads = {"scene"},
      .describe = describeRsm, .record = keepRsm, .makeMap = makeRsm,
      .sameTexel = {"rsm#.depth", "rsm#.radiance", "rsm#.normal"}},
+    {.family = "shadow", .perLight = true, .stage = "direct", .reads = {"scene"},
+     .describe = describeShadow, .record = keepShadow, .rerun = rerunShadow},
     {.family = "lrsm", .perLight = true, .stage = "layers", .reads = {"rsm"},
      .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
     {.family = "gbuffer", .reads = {"scene"},

@@ -132,6 +132,13 @@ void makeLrsmBase(const Capture& inputs, const Settings& settings, std::size_t l
     toBuffers(buildLrsm(rsmFromCapture(inputs, light), settings.layers, captured.partition, stored), light, outputs);
 }
 
+void rerunShadow(const Capture& inputs, std::size_t light, Rerun& made)
+{
+    const Scene scene = wholeScene(inputs);
+    const LightProjection projection = refine(inputs.lights.at(light).projection, inputs.settings.direct.shadowResolution);
+    toBuffers(renderDepthMap(scene, scene.lights.at(light), inputs.needs, projection), light, made.outputs);
+}
+
 /// Base level from the RSM, each mip from the captured level below.
 void rerunLrsm(const Capture& inputs, std::size_t light, Rerun& made)
 {
@@ -155,11 +162,12 @@ void rerunGBuffer(const Capture& inputs, std::size_t, Rerun& made)
 
 void rerunDirect(const Capture& inputs, std::size_t, Rerun& made)
 {
-    const Shadows shadows = inputs.settings.direct.shadows;
-    const Scene lights = sceneFromCapture(inputs);
-    const OpacityPyramid opacity = shadows == Shadows::cone ? opacityFromCapture(inputs) : OpacityPyramid();
-    const std::vector<Rsm> rsms = shadows == Shadows::hard ? mapsOf(inputs, rsmFromCapture) : std::vector<Rsm>(inputs.lights.size());
-    toBuffers(traceDirect(gbufferFromCapture(inputs), lights, inputs.camera, rsms, &opacity, inputs.needs, inputs.settings.direct).radiance, "direct.radiance",
+    const DirectSettings& settings = inputs.settings.direct;
+    const Scene scene = settings.shadows == Shadows::exact ? wholeScene(inputs) : sceneFromCapture(inputs);
+    const OpacityPyramid opacity = settings.shadows == Shadows::cone ? opacityFromCapture(inputs) : OpacityPyramid();
+    const std::vector<DepthMap> maps = readsDepthMaps(settings) ? mapsOf(inputs, depthMapFromCapture) : std::vector<DepthMap>();
+    const std::vector<DepthMapView> depths(maps.begin(), maps.end());
+    toBuffers(traceDirect(gbufferFromCapture(inputs), scene, inputs.camera, depths, &opacity, inputs.needs, settings).radiance, "direct.radiance",
               made.outputs);
 }
 

@@ -27,6 +27,7 @@ void rerunVoxelize(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunVoxelMips(const Capture& inputs, std::size_t light, Rerun& made);
 void makeRsm(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
 void makeLrsmBase(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
+void rerunShadow(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunLrsm(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunGBuffer(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunDirect(const Capture& inputs, std::size_t light, Rerun& made);

@@ -153,7 +153,7 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
     out.needs = needs;
     out.finestTap = narrowestTap(settings, grid.resolution) * voxelSize;
     for (const Light& light : scene.lights) {
-        const Rsm rsm = renderRsm(scene, light, needs, settings.rsm);
+        const Rsm rsm = renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter);
         out.lights.push_back(analyseLight(light, rsm, buildLrsm(rsm, settings.layers), kMapTapVoxels * voxelSize));
     }
     out.coveredFraction = coveredFraction(renderGBuffer(scene, camera, needs, {width, height}));

@@ -155,6 +155,7 @@ Settings Calibration::settings()
 {
     Settings s;
     s.method = Method::lrsm;
+    s.surface = {.textureFilter = TextureFilter::trilinear};
     s.voxel = {.resolution = 128, .mode = Voxelization::thin, .mipFilter = MipFilter::mean, .axes = OpacityAxes::directional, .storage = Storage::gpu};
     s.rsm = {.resolution = 256, .storage = Storage::gpu, .halfRounding = HalfRounding::d3d};
     s.layers = {.depthLayers = 2,
@@ -165,7 +166,7 @@ Settings Calibration::settings()
                 .dropEmpty = true,
                 .storage = Storage::gpu,
                 .halfRounding = HalfRounding::d3d};
-    s.direct = {.shadows = Shadows::hard, .depthBiasTexels = 0.75f, .shadowConeApertureDegrees = 2.0f};
+    s.direct = {.shadows = Shadows::hard, .shadowResolution = 1, .depthBiasTexels = 0.75f, .pcfWidthTexels = 2.0f, .shadowConeApertureDegrees = 2.0f};
     s.cones.set = {.count = 6, .apertureScale = 0.5f, .rotation = Rotation::strata, .filter = true, .setsPerPixel = 1};
     s.cones.march = {.estimator = Estimator::slab,
                      .step = 0.5f,

@@ -1,5 +1,7 @@
 #include "conetrace/frame/direct.h"
 
+#include "conetrace/frame/shadow_map.h"
+#include "conetrace/frame/shadow_rays.h"
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
 #include "core/scene/brdf.h"
@@ -40,15 +42,19 @@ Surface surfaceAt(const GBuffer& gbuffer, std::size_t i)
 }
 
 struct Shadowing {
-    const std::vector<Rsm>& rsms;
+    std::span<const DepthMapView> maps;
     const OpacityPyramid* opacity;
     const DirectSettings& settings;
     float tanHalfAperture = 0.0f;
+    std::vector<Image<std::uint8_t>> rays;  ///< a light
 
-    float visibility(std::size_t light, const Surface& surface, const LightSample& sample) const
+    float visibility(std::size_t light, std::size_t pixel, const Surface& surface, const LightSample& sample) const
     {
+        const ShadowReceiver receiver{surface.position, surface.geometricNormal};
         switch (settings.shadows) {
-        case Shadows::hard: return shadowFromRsm(rsms[light], surface.position, surface.geometricNormal, sample.toLight, settings.depthBiasTexels);
+        case Shadows::exact: return float(rays[light].texels[pixel]);
+        case Shadows::hard: return shadowFromMap(maps[light], receiver, settings.depthBiasTexels);
+        case Shadows::pcf: return shadowFromMapFiltered(maps[light], receiver, settings.depthBiasTexels, settings.pcfWidthTexels);
         case Shadows::cone: return shadowFromCone(*opacity, surface.position, surface.geometricNormal, sample.toLight, sample.distance, tanHalfAperture);
         case Shadows::off: break;
         }
@@ -56,14 +62,14 @@ struct Shadowing {
     }
 };
 
-Vec3 shade(const std::vector<LightSampler>& lights, const Surface& surface, const Vec3& toEye, bool specular, const Shadowing& shadowing)
+Vec3 shade(const std::vector<LightSampler>& lights, std::size_t pixel, const Surface& surface, const Vec3& toEye, bool specular, const Shadowing& shadowing)
 {
     Vec3 radiance(0.0f);
     for (std::size_t k = 0; k < lights.size(); ++k) {
         const LightSample sample = lights[k](surface.position);
         const float nDotL = glm::dot(surface.normal, sample.toLight);
         if (sample.irradiance == Vec3(0.0f) || nDotL <= 0.0f || glm::dot(surface.geometricNormal, sample.toLight) <= 0.0f) continue;
-        const float visibility = shadowing.visibility(k, surface, sample);
+        const float visibility = shadowing.visibility(k, pixel, surface, sample);
         if (visibility == 0.0f) continue;
 
         Vec3 reflected = surface.albedo * (nDotL / kPi);
@@ -74,22 +80,6 @@ Vec3 shade(const std::vector<LightSampler>& lights, const Surface& surface, cons
 }
 
 }  // namespace
-
-float shadowFromRsm(const Rsm& rsm, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float depthBiasTexels)
-{
-    const LightProjection& q = rsm.projection;
-    const LightSpacePoint p = projectToLight(q, pWorld);
-    if (!p.valid || !(p.u >= 0.0f && p.u < 1.0f && p.v >= 0.0f && p.v < 1.0f)) return 1.0f;
-    const int last = q.resolution - 1;
-    const int x = std::min(last, static_cast<int>(p.u * float(q.resolution))), y = std::min(last, static_cast<int>(p.v * float(q.resolution)));
-    if (rsm.texels.at(x, y).coverage == 0.0f) return 1.0f;
-
-    const float cosine = std::max(1e-3f, glm::dot(nGeometric, toLight));
-    const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
-    // Depth is stored in float32 over the range: a few of its roundings are no occluder.
-    const float bias = depthBiasTexels * p.texelSize * (std::min(slope, kMaxBiasSlope) + kFlatBias) / q.depthRange() + 0x1p-21f;
-    return rsm.depthLinear.at(x, y) + bias < p.depth ? 0.0f : 1.0f;
-}
 
 float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
 {
@@ -106,13 +96,15 @@ float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Ve
     return transmittance > kTransmittanceCutoff ? transmittance : 0.0f;
 }
 
-DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, const std::vector<Rsm>& rsms, const OpacityPyramid* opacity,
+DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, std::span<const DepthMapView> maps, const OpacityPyramid* opacity,
                          const Requirements& needs, const DirectSettings& settings)
 {
-    assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
+    assert(!readsDepthMaps(settings) || maps.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
-    const Shadowing shadowing{.rsms = rsms, .opacity = opacity, .settings = settings, .tanHalfAperture = static_cast<float>(tangent(halfAperture))};
+    Shadowing shadowing{.maps = maps, .opacity = opacity, .settings = settings, .tanHalfAperture = static_cast<float>(tangent(halfAperture)), .rays = {}};
+    if (settings.shadows == Shadows::exact)
+        for (const Light& light : scene.lights) shadowing.rays.push_back(traceShadowRays(scene, gbuffer, light, needs));
 
     const std::vector<LightSampler> lights(scene.lights.begin(), scene.lights.end());
 
@@ -122,7 +114,7 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
             if (!gbuffer.covered(i)) continue;
             const Surface surface = surfaceAt(gbuffer, i);
             const Vec3 toEye = directionToEye(camera, surface.position);
-            result.radiance.texels[i] = shade(lights, surface, toEye, needs.specular, shadowing);
+            result.radiance.texels[i] = shade(lights, i, surface, toEye, needs.specular, shadowing);
         }
     });
     return result;

@@ -41,9 +41,11 @@ void checkDepthRatio(const Camera& camera, const Aabb& bounds)
     throw InputError("camera \"" + camera.name + "\"", text.str());
 }
 
-void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& camera, const SurfaceHit& hit)
+void writePixel(GBuffer& out, std::size_t i, const Scene& scene, const Camera& camera, const SurfaceHit& hit, const PixelSpacing* spacing)
 {
-    const Surface surface = evaluateSurface(scene, hit, directionToEye(camera, positionOf(scene, hit)));
+    const Vec3 pWorld = positionOf(scene, hit);
+    const PixelSpacing here = spacing ? spacingAt(*spacing, camera, pWorld) : PixelSpacing();
+    const Surface surface = evaluateSurface(scene, hit, directionToEye(camera, pWorld), spacing ? &here : nullptr);
     out.position.texels[i] = surface.position;
     out.geometricNormal.texels[i] = surface.geometricNormal;
     out.normal.texels[i] = surface.normal;
@@ -114,10 +116,11 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requiremen
         out.specularColor = Image<Vec3>(width, height);
         out.roughness = Image<float>(width, height);
     }
+    const PixelSpacing unit = pixelSpacing(camera, height), *spacing = settings.textureFilter == TextureFilter::trilinear ? &unit : nullptr;
     parallelFor(out.objectId.texels.size(), 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Fragment& fragment = drawn.fragments.texels[i];
-            if (fragment.triangle != kNoTriangle) writePixel(out, i, scene, camera, hitOf(drawn.firstTriangle, fragment));
+            if (fragment.triangle != kNoTriangle) writePixel(out, i, scene, camera, hitOf(drawn.firstTriangle, fragment), spacing);
         }
     });
     return out;

@@ -5,6 +5,7 @@
 #include "core/scene/camera.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "core/settings/settings.h"
 
 namespace lrsm {
 
@@ -47,6 +48,7 @@ inline Counters countersOf(const GBuffer& gbuffer)
 
 struct GBufferSettings {
     int width = 1280, height = 720;
+    TextureFilter textureFilter = TextureFilter::trilinear;
     bool operator==(const GBufferSettings&) const = default;
 };
 

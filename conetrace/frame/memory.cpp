@@ -1,6 +1,7 @@
 #include "conetrace/frame/memory.h"
 
 #include "conetrace/frame/gbuffer.h"
+#include "lrsm/depth_map.h"
 #include "lrsm/rsm.h"
 #include "voxel/opacity_pyramid.h"
 
@@ -37,6 +38,24 @@ std::vector<MemoryRow> predictVoxels(const VoxelSettings& settings, bool bits, b
         return {};
     }
     return {row};
+}
+
+std::vector<MemoryRow> predictShadowMaps(const Settings& settings, std::size_t lights)
+{
+    std::vector<MemoryRow> rows;
+    if (!hasShadowMaps(settings.direct)) return rows;
+    const int resolution = settings.rsm.resolution * settings.direct.shadowResolution;
+    for (std::size_t light = 0; light < lights; ++light) {
+        const std::string pass = "shadow " + std::to_string(light);
+        rows.push_back({.structure = pass,
+                        .pass = pass,
+                        .detail = std::to_string(resolution) + "^2",
+                        .predicted = DepthMap::predictBytes(resolution),
+                        .predictedGpu = DepthMap::predictBytes(resolution),
+                        .table2 = "",
+                        .measured = {}});
+    }
+    return rows;
 }
 
 std::vector<MemoryRow> predictRsms(const RsmSettings& settings, std::size_t lights)

@@ -38,6 +38,8 @@ struct MemoryQuestion {
 std::vector<MemoryRow> predictVoxels(const VoxelSettings& settings, bool bits, bool mips);
 /// A reflective shadow map a light.
 std::vector<MemoryRow> predictRsms(const RsmSettings& settings, std::size_t lights);
+/// The depth maps beside the RSMs, where shadow_resolution asks for them.
+std::vector<MemoryRow> predictShadowMaps(const Settings& settings, std::size_t lights);
 MemoryRow predictGBuffer(const MemoryQuestion& question);
 
 /// All that is held at once while a frame is rendered, its pictures included.

@@ -14,6 +14,7 @@ struct Triangle {
     const Mesh& mesh;
     std::array<std::uint32_t, 3> index;
     float b0, b1, b2;
+    Vec2 right{0.0f}, down{0.0f};  ///< movement of (b1, b2) from pixel to pixel
 
     template <class T>
     T interpolate(const std::vector<T>& stream) const
@@ -39,16 +40,35 @@ Vec2 transformUv(const TextureUse& use, const Vec2& uv)
 }
 
 /// A missing uv set reads the texture at uv 0, as a GPU's default attribute would.
-Vec2 uvAt(const Triangle& triangle, const TextureUse& use)
+TexturePlace placeAt(const Triangle& triangle, const TextureUse& use)
 {
     const std::vector<Vec2>& stream = uvStream(triangle.mesh, use);
-    return transformUv(use, stream.empty() ? Vec2(0.0f) : triangle.interpolate(stream));
+    if (stream.empty()) return {transformUv(use, Vec2(0.0f)), Vec2(0.0f), Vec2(0.0f)};
+    const Vec2 edge1 = stream[triangle.index[1]] - stream[triangle.index[0]], edge2 = stream[triangle.index[2]] - stream[triangle.index[0]];
+    const auto moved = [&](const Vec2& b) { return use.uvScaleRotation * (b.x * edge1 + b.y * edge2); };
+    return {transformUv(use, triangle.interpolate(stream)), moved(triangle.right), moved(triangle.down)};
+}
+
+/// The next pixel's ray, parallel to `toViewer` in the limit, meets the triangle's plane where b1 and b2 have moved by this.
+Vec2 movement(const Triangle& triangle, const Vec3& acrossAxis, const Vec3& toViewer)
+{
+    const DVec3 p0 = triangle.mesh.positions[triangle.index[0]];
+    const DVec3 e1 = DVec3(triangle.mesh.positions[triangle.index[1]]) - p0, e2 = DVec3(triangle.mesh.positions[triangle.index[2]]) - p0;
+    const DVec3 n = glm::cross(e1, e2), v(toViewer), s(acrossAxis);
+    const DVec3 along = s - v * (glm::dot(n, s) / glm::dot(n, v));
+    const double area2 = glm::dot(n, n);
+    return Vec2(glm::dvec2(glm::dot(glm::cross(along, e2), n), glm::dot(glm::cross(e1, along), n)) / area2);
+}
+
+bool hasTexture(const Material& material)
+{
+    return material.baseColorTexture || material.metallicRoughnessTexture || material.normalTexture;
 }
 
 Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
 {
     Vec4 color = material.baseColor;
-    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
+    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
     if (!triangle.mesh.colors.empty()) color *= triangle.interpolate(triangle.mesh.colors);
     for (int c = 0; c < 4; ++c) color[c] = color[c] > 0.0f ? std::min(color[c], 1.0f) : 0.0f;  // NaN too
     return color;
@@ -97,7 +117,7 @@ Vec3 applyNormalMap(const Scene& scene, const Material& material, const Triangle
     if (tangent.w == 0.0f || t == Vec3(0.0f)) return n;
     const Vec3 b = glm::cross(n, t) * std::copysign(1.0f, tangent.w);
 
-    const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
+    const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
     const Vec3 m = (2.0f * Vec3(texel) - 1.0f) * Vec3(material.normalScale, material.normalScale, 1.0f);
     return normalizedOr(DVec3(t) * double(m.x) + DVec3(b) * double(m.y) + DVec3(n) * double(m.z), n);
 }
@@ -143,10 +163,14 @@ bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit)
     return !material.alphaMask || baseColorAt(scene, material, triangleAt(scene, hit)).a >= material.alphaCutoff;
 }
 
-Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer)
+Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer, const PixelSpacing* spacing)
 {
-    const Triangle triangle = triangleAt(scene, hit);
+    Triangle triangle = triangleAt(scene, hit);
     const Material& material = scene.materials[std::size_t(triangle.mesh.material)];
+    if (spacing && hasTexture(material)) {
+        triangle.right = movement(triangle, spacing->right, toViewer);
+        triangle.down = movement(triangle, spacing->down, toViewer);
+    }
 
     Surface surface;
     surface.position = triangle.interpolate(triangle.mesh.positions);
@@ -154,7 +178,7 @@ Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& t
 
     float metallic = material.metallic, roughness = material.roughness;
     if (const TextureUse& use = material.metallicRoughnessTexture) {
-        const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], uvAt(triangle, use));
+        const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
         roughness *= texel.g;
         metallic *= texel.b;
     }

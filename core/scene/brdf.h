@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scene/camera.h"
 #include "core/scene/scene.h"
 
 /// The material at a point, shared by the real-time passes and the reference, so that a difference between them is transport.
@@ -27,7 +28,10 @@ struct Surface {
 ///
 /// Normal maps use the mesh's tangents, else dP/du of the triangle itself, made orthogonal to the shading normal; where the uv are
 /// degenerate the map is ignored. Vertex colours multiply the base colour.
-Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer);
+///
+/// With `spacing`, textures are read trilinearly by their movement over the triangle's plane from pixel to pixel (ray differentials: Igehy, SIGGRAPH 1999);
+/// without, at their base level. The alpha test reads the base level always: shadow rays and voxels have no pixels.
+Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer, const PixelSpacing* spacing = nullptr);
 
 /// Does the alpha test keep this hit? True for materials without a mask.
 bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit);

@@ -4,6 +4,13 @@
 
 namespace lrsm {
 
+PixelSpacing pixelSpacing(const Camera& camera, int height)
+{
+    const double half = camera.perspective ? tangent(0.5 * double(camera.verticalFov)) : 0.5 * double(camera.verticalExtent);
+    const float pixel = static_cast<float>(2.0 * half / height);
+    return {glm::normalize(glm::cross(camera.forward, camera.up)) * pixel, -camera.up * pixel};
+}
+
 CameraRay pixelRay(const Camera& camera, int width, int height, float pixelX, float pixelY)
 {
     const Vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));

@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
 #include "core/scene/gltf_document.h"
+#include "core/scene/mip_chain.h"
 #include "core/scene/pose_asset.h"
 
 #include <algorithm>
@@ -146,6 +147,7 @@ Scene loadGltf(const std::string& path, const LoadOptions& options)
     scene.name = std::filesystem::path(path).filename().string();
     gltf::checkNotEmpty(scene, path);
     gltf::decodeTextures(asset, scene);
+    buildMipChains(scene);
     if (scene.lights.empty()) addDefaultLight(scene);
     if (scene.cameras.empty()) addDefaultCamera(scene);
     return scene;

@@ -25,7 +25,8 @@ struct Texture {
     Image<Rgba8> image;  ///< empty when no used material refers to it: decoded only if used
     Wrap wrapS = Wrap::repeat;
     Wrap wrapT = Wrap::repeat;
-    bool nearest = false;  ///< magFilter NEAREST; else bilinear. Mips are not used: RSM, G-buffer and reference see the same texels.
+    bool nearest = false;                           ///< magFilter NEAREST; else bilinear
+    std::vector<Image<Rgba8>> colorMips, dataMips;  ///< levels 1 .. 1x1 (mip_chain.h), as colours and as numbers; empty where no material uses it so
 };
 
 /// A texture as a material uses it: uv' = (uvScaleRotation * uv) + uvOffset (KHR_texture_transform).

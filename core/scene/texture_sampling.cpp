@@ -67,12 +67,10 @@ double bilinear(double v00, double v10, double v01, double v11, double tx, doubl
 }
 
 template <class Decode>
-Vec4 sample(const Texture& texture, Vec2 uv, const Decode& decode)
+Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decode& decode)
 {
-    const Image<Rgba8>& image = texture.image;
-    if (image.empty()) return Vec4(1.0f);
-    const Taps x = tapsAlong(uv.x, image.width, texture.wrapS, texture.nearest);
-    const Taps y = tapsAlong(uv.y, image.height, texture.wrapT, texture.nearest);
+    const Taps x = tapsAlong(uv.x, image.width, texture.wrapS, nearest);
+    const Taps y = tapsAlong(uv.y, image.height, texture.wrapT, nearest);
     const Rgba8 t00 = image.at(x.i0, y.i0), t10 = image.at(x.i1, y.i0);
     const Rgba8 t01 = image.at(x.i0, y.i1), t11 = image.at(x.i1, y.i1);
     const auto colour = [&](std::uint8_t Rgba8::*c) {
@@ -82,16 +80,63 @@ Vec4 sample(const Texture& texture, Vec2 uv, const Decode& decode)
     return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), float(alpha / 255.0));
 }
 
+/// Minified textures are read bilinearly whatever magFilter says.
+template <class Decode>
+Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const TexturePlace& place, const Decode& decode)
+{
+    if (texture.image.empty()) return Vec4(1.0f);
+    const float level = textureLevel(texture.image, place, mips.size() + 1);
+    const auto at = [&](std::size_t i) {
+        return sampleLevel(texture, i == 0 ? texture.image : mips[i - 1], texture.nearest && !(level > 0.0f), place.uv, decode);
+    };
+    const auto lower = static_cast<std::size_t>(level);
+    const float fraction = level - static_cast<float>(lower);
+    const Vec4 fine = at(lower);
+    return fraction > 0.0f ? fine + (at(lower + 1) - fine) * fraction : fine;
+}
+
+double fromUnorm(std::uint8_t value)
+{
+    return double(float(value) / 255.0f);
+}
+double fromSrgb(std::uint8_t value)
+{
+    return double(kLinearFromSrgb[value]);
+}
+
 }  // namespace
+
+float linearFromSrgb(std::uint8_t code)
+{
+    return kLinearFromSrgb[code];
+}
+
+float textureLevel(const Image<Rgba8>& base, const TexturePlace& place, std::size_t levels)
+{
+    const Vec2 size(float(base.width), float(base.height)), right = place.uvRight * size, down = place.uvDown * size;
+    const float length2 = std::max(glm::dot(right, right), glm::dot(down, down));  // texels squared
+    if (!(length2 > 1.0f) || !std::isfinite(length2)) return 0.0f;
+    return std::min(0.5f * fastLog2(length2), static_cast<float>(levels - 1));
+}
+
+Vec4 sampleTexture(const Texture& texture, const TexturePlace& place)
+{
+    return sample(texture, texture.dataMips, place, fromUnorm);
+}
+
+Vec4 sampleTextureSrgb(const Texture& texture, const TexturePlace& place)
+{
+    return sample(texture, texture.colorMips, place, fromSrgb);
+}
 
 Vec4 sampleTexture(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, uv, [](std::uint8_t value) { return double(float(value) / 255.0f); });
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromUnorm);
 }
 
 Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, uv, [](std::uint8_t value) { return double(kLinearFromSrgb[value]); });
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromSrgb);
 }
 
 }  // namespace lrsm

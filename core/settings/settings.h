@@ -17,6 +17,13 @@ enum class Voxelization { conservative, thin, raster };
 enum class MipFilter { mean, coverage, max };
 enum class OpacityAxes { isotropic, directional };  ///< one opacity a voxel, or an area density along each axis
 
+enum class TextureFilter { trilinear, bilinear };  ///< by mips and the pixel's or RSM texel's own size; or the base level alone
+
+struct SurfaceSettings {
+    TextureFilter textureFilter = TextureFilter::trilinear;
+    bool operator==(const SurfaceSettings&) const = default;
+};
+
 struct VoxelSettings {
     int resolution = 512;  ///< voxels along an edge, power of two, 1..2048
     Voxelization mode = Voxelization::thin;
@@ -50,14 +57,33 @@ struct LayerSettings {
     bool operator==(const LayerSettings&) const = default;
 };
 
-enum class Shadows { hard, cone, off };  ///< RSM depth comparison; shadow cone through the voxels; unshadowed
+enum class Shadows {
+    exact,  ///< a shadow ray a pixel
+    hard,   ///< comparison with the depth of one texel of the light's map
+    pcf,    ///< the mean of such comparisons
+    cone,   ///< the paper: a cone through the voxels
+    off
+};
 
 struct DirectSettings {
-    Shadows shadows = Shadows::hard;
-    float depthBiasTexels = 0.75f;           ///< hard: slope-scaled bias in RSM texels, >= 0; half a texel's diagonal just covers a plane
+    Shadows shadows = Shadows::exact;
+    int shadowResolution = 1;                ///< hard, pcf: texels of the light's depth map over the RSM's, along an edge: 1 (the RSM itself), 2, 4
+    float depthBiasTexels = 0.75f;           ///< hard, pcf: slope-scaled bias in texels of the map, >= 0, besides the receiver's own plane
+    float pcfWidthTexels = 2.0f;             ///< pcf: edge of the square that is averaged, (0, 16]
     float shadowConeApertureDegrees = 2.0f;  ///< cone: full aperture, (0, 90]
     bool operator==(const DirectSettings&) const = default;
 };
+
+inline bool readsDepthMaps(const DirectSettings& settings)
+{
+    return settings.shadows == Shadows::hard || settings.shadows == Shadows::pcf;
+}
+
+/// Depth maps of their own, besides the RSMs'.
+inline bool hasShadowMaps(const DirectSettings& settings)
+{
+    return readsDepthMaps(settings) && settings.shadowResolution > 1;
+}
 
 enum class Estimator { paper, slab };
 enum class OpacityModel { none, density };
@@ -134,6 +160,7 @@ struct ForceSettings {
 
 struct Settings {
     Method method = Method::lrsm;
+    SurfaceSettings surface;
     VoxelSettings voxel;
     RsmSettings rsm;
     LayerSettings layers;

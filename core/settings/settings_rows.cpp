@@ -9,6 +9,7 @@ namespace {
 
 /// Where each struct of settings lies, and the stage that it belongs to; the pointer only names the struct.
 struct Places {
+    static auto of(auto& s, SurfaceSettings*) { return std::pair(&s.surface, "surface"); }
     static auto of(auto& s, VoxelSettings*) { return std::pair(&s.voxel, "voxel"); }
     static auto of(auto& s, RsmSettings*) { return std::pair(&s.rsm, "rsm"); }
     static auto of(auto& s, LayerSettings*) { return std::pair(&s.layers, "layers"); }
@@ -136,6 +137,9 @@ void addBuildingRows(std::vector<SettingRow>& rows)
 {
     const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"};
 
+    rows.push_back(choice<&SurfaceSettings::textureFilter>(
+        {"texture_filter", "", "of RSM and G-buffer: mips by derivatives, or the base level alone", "D3D11.3 spec 7.18: trilinear"},
+        {"trilinear", "bilinear"}));
     rows.push_back(whole<&V::resolution>({"voxel_resolution", "voxels", "voxels along an edge of the grid", "paper Table 2: 256, 512"}, powersOfTwo(1, 2048)));
     rows.push_back(
         choice<&V::mode>({"voxelization", "", "exact box overlap; 6-separating; or sampled along the dominant axis (has holes)", "paper Sec. 3.2: raster"},
@@ -166,8 +170,13 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&L::halfRounding>({"layer_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, rounding));
 
     rows.push_back(
-        choice<&D::shadows>({"shadows", "", "RSM depth comparison; shadow cones through the voxels; or none", "paper Table 3: cone"}, {"hard", "cone", "off"}));
-    rows.push_back(real<&D::depthBiasTexels>({"depth_bias_texels", "RSM texels", "slope-scaled bias of hard shadows", "ours"}, {0, 1000}));
+        choice<&D::shadows>({"shadows", "", "a shadow ray a pixel; depth map, one texel or a mean; cones through the voxels; or none", "paper Table 3: cone"},
+                            {"exact", "hard", "pcf", "cone", "off"}));
+    rows.push_back(whole<&D::shadowResolution>({"shadow_resolution", "RSM resolutions", "of the depth map of hard and pcf; 1: the RSM's own depth", "ours"},
+                                               powersOfTwo(1, 4)));
+    rows.push_back(
+        real<&D::depthBiasTexels>({"depth_bias_texels", "map texels", "hard, pcf: slope-scaled bias besides the receiver's plane", "ours"}, {0, 1000}));
+    rows.push_back(real<&D::pcfWidthTexels>({"pcf_width_texels", "map texels", "pcf: edge of the square averaged; 1 is bilinear", "ours"}, above(0, 16)));
     rows.push_back(real<&D::shadowConeApertureDegrees>({"shadow_cone_aperture_degrees", "degrees", "full aperture of a shadow cone", "ours"}, above(0, 90)));
 }
 

@@ -81,7 +81,7 @@ void shadowCones(benchmark::State& state)
     Inputs in(static_cast<int>(state.range(0)), preset("balanced"));
     in.settings.direct.shadows = Shadows::cone;
     for (auto _ : state)
-        benchmark::DoNotOptimize(traceDirect(in.gbuffer, in.scene, in.camera(), in.rsms, &in.opacity, in.needs, in.settings.direct).radiance.texels.data());
+        benchmark::DoNotOptimize(traceDirect(in.gbuffer, in.scene, in.camera(), {}, &in.opacity, in.needs, in.settings.direct).radiance.texels.data());
     state.SetItemsProcessed(state.iterations() * kWidth * kHeight);
     state.SetLabel(std::string(kScenes[state.range(0)]) + ", pixels");
 }

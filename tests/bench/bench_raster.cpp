@@ -115,13 +115,15 @@ void directPass(benchmark::State& state)
     const Scene scene = makeScene(256);
     const GBuffer gbuffer = renderGBuffer(scene, camera(), kDiffuse, {1280, 720});
     const std::vector<Rsm> maps{renderRsm(scene, scene.lights[0], kDiffuse, {})};
+    const std::vector<DepthMapView> depths(maps.begin(), maps.end());
+    constexpr const char* kNames[] = {"pixels, exact", "pixels, hard", "pixels, pcf", "", "pixels, off"};
     DirectSettings settings;
-    settings.shadows = state.range(0) != 0 ? Shadows::hard : Shadows::off;
-    for (auto _ : state) benchmark::DoNotOptimize(traceDirect(gbuffer, scene, camera(), maps, nullptr, kDiffuse, settings).radiance.texels.data());
+    settings.shadows = static_cast<Shadows>(state.range(0));
+    for (auto _ : state) benchmark::DoNotOptimize(traceDirect(gbuffer, scene, camera(), depths, nullptr, kDiffuse, settings).radiance.texels.data());
     state.SetItemsProcessed(state.iterations() * 1280 * 720);
-    state.SetLabel(state.range(0) != 0 ? "pixels, hard shadows" : "pixels, no shadows");
+    state.SetLabel(kNames[state.range(0)]);
 }
-BENCHMARK(directPass)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(directPass)->Arg(0)->Arg(1)->Arg(2)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 }  // namespace
 

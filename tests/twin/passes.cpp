@@ -126,12 +126,16 @@ std::vector<std::string> runAll(Frame& frame, const Options& options)
     const bool drawable = frame.manifest()["scene"]["complete"].get<bool>() && !frame.manifest()["requires"]["vertex_colors"].get<bool>();
     if (!drawable) leftOut.push_back("rsm, gbuffer: the capture holds no textures");
     const int lights = int(frame.manifest()["lights"].size());
+    if (lights > 0 && frame.has("shadow0.depth")) leftOut.push_back("shadow: an RSM without its colours");
     for (int light = 0; light < lights; ++light) {
         if (drawable) rsm(frame, options, light);
         if (layersStored(frame, light) > 0) lrsm(frame, options, light);
     }
     if (drawable) gbuffer(frame, options);
-    direct(frame, options);
+    if (frame.is("shadows", "exact"))
+        leftOut.push_back("direct: shadows=exact needs the scene's triangles, and no map");
+    else
+        direct(frame, options);
     cones(frame, options);
     if (frame.has("filter.irradiance")) filter(frame, options);
     composite(frame, options);

@@ -172,7 +172,7 @@ void direct(Frame& frame, const Options& options)
 {
     const Json &lights = frame.manifest()["lights"], &constants = frame.manifest()["constants"];
     std::vector<std::string> defines = specularDefine(frame);
-    defines.push_back(choice(frame, "shadows", "SHADOWS", {"hard", "cone", "off"}));
+    defines.push_back(choice(frame, "shadows", "SHADOWS", {"hard", "pcf", "cone", "off"}));
     if (frame.is("opacity_axes", "directional")) defines.push_back("DIRECTIONAL");
     const Program& program = options.compute("direct", {"pixel.glsl", "light.glsl", "opacity.glsl", "direct.comp.glsl"}, defines);
     const Pixels pixels(frame, program);
@@ -181,17 +181,19 @@ void direct(Frame& frame, const Options& options)
     program.set("depthBiasTexels", frame.number("depth_bias_texels"));
     program.set("flatBias", constants["shadow_flat_bias"].get<float>());
     program.set("maxBiasSlope", constants["shadow_max_bias_slope"].get<float>());
+    program.set("snappingTexels", constants["shadow_snapping_texels"].get<float>());
+    program.set("grazingCosine", constants["shadow_grazing_cosine"].get<float>());
+    program.set("pcfWidthTexels", frame.number("pcf_width_texels"));
     program.set("minSpecularAlpha", constants["min_specular_alpha"].get<float>());
     program.set("tanHalfAperture", float(std::tan(double(frame.number("shadow_cone_aperture_degrees")) * 3.14159265358979323846 / 360.0)));
 
     const StorageBuffer lightRecords = lightBuffer(frame);
-    Texture depth, radiance, opacity;
-    if (frame.is("shadows", "hard") && !lights.empty()) {
-        const int n = lights[0]["projection"]["resolution"];
-        depth = allLights(frame, "rsm", "depth", kFloat, n, int(lights.size()), 1);
-        radiance = allLights(frame, "rsm", "radiance", kUint16x4, n, int(lights.size()), 1);
+    Texture depth, opacity;
+    if ((frame.is("shadows", "hard") || frame.is("shadows", "pcf")) && !lights.empty()) {
+        const int finer = int(frame.number("shadow_resolution")), n = finer * lights[0]["projection"]["resolution"].get<int>();
+        depth = allLights(frame, finer > 1 ? "shadow" : "rsm", "depth", kFloat, n, int(lights.size()), 1);
+        program.set("mapResolution", float(n));
         bindTexture(0, depth);
-        bindTexture(1, radiance);
     }
     const Sampler sampler = borderSampler();
     if (frame.is("shadows", "cone")) {

@@ -29,10 +29,11 @@ LadderLight makeLight(const Scene& scene, const Light& light, const Requirements
     wideRsm.storage = Storage::float32;
     LayerSettings wideLayers = settings.layers;
     wideLayers.storage = Storage::float32;
-    Rsm rsm = renderRsm(scene, light, needs, wideRsm);
+    Rsm rsm = renderRsm(scene, light, needs, wideRsm, settings.surface.textureFilter);
     LayerModel model(rsm, settings.layers);
     Lrsm wide = buildLrsm(rsm, wideLayers);
-    stored.push_back(buildLrsm(settings.rsm.storage == Storage::gpu ? renderRsm(scene, light, needs, settings.rsm) : rsm, settings.layers));
+    stored.push_back(
+        buildLrsm(settings.rsm.storage == Storage::gpu ? renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter) : rsm, settings.layers));
     return {std::move(rsm), std::move(model), std::move(wide)};
 }
 
@@ -50,7 +51,7 @@ class LadderWorld {
           side_(std::max(2, static_cast<int>(std::ceil(std::sqrt(double(options.raysPerSample)))))),
           opacity_(buildPyramid(voxelize(scene, settings.voxel), settings.voxel)),
           embree_(scene),
-          gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height})),
+          gbuffer_(renderGBuffer(scene, camera, needs, {options.width, options.height, settings.surface.textureFilter})),
           plan_(planGather(settings.cones, needs, settings.voxel.resolution)),
           phi_(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize)
     {

@@ -13,6 +13,7 @@ inline Settings smallSettings()
     Settings s;
     s.voxel.resolution = 32;
     s.rsm.resolution = 64;
+    s.direct.shadows = Shadows::hard;
     return s;
 }
 

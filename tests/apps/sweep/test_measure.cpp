@@ -159,6 +159,6 @@ TEST_CASE("the calibration frame is no preset's: its settings are pinned", "[swe
     for (const auto& [key, value] : pinned) CHECK(std::stod(value) == json.at(key).get<double>());
     CHECK(json.at("method") == "lrsm");
     json.erase("method");
-    CHECK(Sha256().add(json.dump()).hex() == "f1e6aa732f6648d626f9aa8f2a10390ec58a9f4b2ab69882b79f5a366386460a");
+    CHECK(Sha256().add(json.dump()).hex() == "7c589898072fa56e56e3478de6b2167d8901acb99569c04ad1bbaff9950471ff");
     CHECK(calibration().run().cpu > 0.0);
 }

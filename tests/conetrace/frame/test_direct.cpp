@@ -2,9 +2,7 @@
 
 #include "core/base/parallel.h"
 #include "core/scene/brdf.h"
-#include "core/scene/light.h"
-#include "core/scene/shapes.h"
-#include "tests/conetrace/ray_oracle.h"
+#include "tests/conetrace/frame/direct_scene.h"
 #include "voxel/voxelize.h"
 
 #include "catch.h"
@@ -14,50 +12,6 @@ using namespace lrsm;
 namespace {
 
 constexpr double kPiOfDirect = 3.14159265358979323846;
-const Requirements kDirectNeeds;
-
-void addMesh(Scene& scene, Mesh mesh, const Vec3& albedo, bool doubleSided)
-{
-    mesh.material = int(scene.materials.size());
-    scene.materials.push_back(diffuseMaterial("m", albedo, doubleSided));
-    scene.meshes.push_back(std::move(mesh));
-}
-
-/// A floor, a slanted wall, a hovering square and a ball.
-Scene directScene()
-{
-    Scene scene;
-    Mesh floor, wall, square, ball;
-    addQuad(floor, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
-    addQuad(wall, {-4, 0, -3}, {4, 0, -3}, {4, 4, -4}, {-4, 4, -4});
-    addQuad(square, {-2, 1.5f, 1}, {-0.5f, 1.5f, 1}, {-0.5f, 1.5f, -1}, {-2, 1.5f, -1});
-    addSphere(ball, Vec3(1.5f, 0.8f, 0), 0.8f, 4);
-    addMesh(scene, floor, Vec3(0.8f, 0.6f, 0.4f), false);
-    addMesh(scene, wall, Vec3(0.5f), false);
-    addMesh(scene, square, Vec3(0.3f, 0.9f, 0.1f), true);
-    addMesh(scene, ball, Vec3(0.7f), false);
-    updateBounds(scene);
-    return scene;
-}
-Camera directCamera()
-{
-    return lookAt({0.5f, 4, 6}, {0, 0.7f, -0.5f}, {0, 1, 0}, 0.9f);
-}
-Light testLight(int kind)
-{
-    return kind == 0 ? directionalLight(glm::normalize(Vec3(0.35f, -1, -0.2f)), Vec3(3, 2, 1))
-                     : spotLight({-1.5f, 5, 1.5f}, {0.2f, 0, -0.3f}, Vec3(40, 50, 60), 0.5f, 0.9f);
-}
-
-std::vector<Rsm> renderMaps(const Scene& scene, int resolution)
-{
-    std::vector<Rsm> maps;
-    RsmSettings settings;
-    settings.resolution = resolution;
-    for (const Light& light : scene.lights) maps.push_back(renderRsm(scene, light, kDirectNeeds, settings));
-    return maps;
-}
-
 OpacityPyramid voxels(const Scene& scene, OpacityAxes axes)
 {
     VoxelSettings settings;
@@ -71,14 +25,6 @@ DirectSettings shadowsOf(Shadows mode)
     DirectSettings settings;
     settings.shadows = mode;
     return settings;
-}
-
-/// Is the light seen from p, by ray casting?
-bool litByRay(const Scene& scene, const LightSample& sample, const Vec3& p, const Vec3& n)
-{
-    const glm::dvec3 origin = glm::dvec3(p) + glm::dvec3(n) * 1e-4;
-    const oracle::RayHit hit = oracle::closestHit(scene, origin, glm::dvec3(sample.toLight), 0.0, false);
-    return hit.mesh < 0 || hit.t > double(sample.distance) - 1e-3;
 }
 
 }  // namespace
@@ -129,56 +75,6 @@ TEST_CASE("direct light: a surface's own specular lobe is added, and left out wh
     CHECK(brighter > 500);
 }
 
-TEST_CASE("hard shadows: equal to ray-cast shadows but for a rim of texels", "[conetrace][direct]")
-{
-    const int kind = GENERATE(0, 1), resolution = GENERATE(256, 1024);
-    Scene scene = directScene();
-    scene.lights = {testLight(kind)};
-    const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {128, 72});
-    const std::vector<Rsm> maps = renderMaps(scene, resolution);
-    int lit = 0, dark = 0, acne = 0, leaks = 0;
-    for (std::size_t i = 0; i < g.objectId.texels.size(); ++i) {
-        if (!g.covered(i)) continue;
-        const Vec3 p = g.position.texels[i], n = g.geometricNormal.texels[i];
-        const LightSample sample = sampleLight(scene.lights[0], p);
-        if (glm::dot(n, sample.toLight) <= 0.02f || sample.irradiance == Vec3(0.0f)) continue;
-        const bool expected = litByRay(scene, sample, p, n);
-        const float visibility = shadowFromRsm(maps[0], p, n, sample.toLight, DirectSettings{}.depthBiasTexels);
-        (expected ? lit : dark) += 1;
-        acne += expected && visibility != 1.0f;
-        leaks += !expected && visibility != 0.0f;
-    }
-    CAPTURE(kind, resolution, lit, dark, acne, leaks);
-    CHECK(lit > 3000);
-    CHECK(dark > 200);
-    CHECK(acne < (resolution == 256 ? 0.004 : 0.001) * lit);
-    CHECK(leaks < (resolution == 256 ? 0.04 : 0.01) * dark);
-}
-
-TEST_CASE("hard shadows: a lone plane never shadows itself, at any slant", "[conetrace][direct]")
-{
-    for (const float slant : {0.0f, 0.3f, 0.8f, 1.2f, 1.45f})
-        for (const int kind : {0, 1}) {
-            Scene scene;
-            Mesh floor;
-            addQuad(floor, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
-            addMesh(scene, floor, Vec3(0.5f), false);
-            updateBounds(scene);
-            const Vec3 from(std::sin(slant), std::cos(slant), 0);
-            scene.lights = {kind == 0 ? directionalLight(-from, Vec3(1)) : spotLight(from * 6.0f, {0, 0, 0}, Vec3(1), 0.3f, 0.5f)};
-            const std::vector<Rsm> maps = renderMaps(scene, 128);
-            int shadowed = 0;
-            for (int i = 0; i < 40000; ++i) {
-                const Vec3 p(-3.99f + 7.98f * float(i % 200) / 199, 0, -3.99f + 7.98f * float(i / 200) / 199);
-                const LightSample sample = sampleLight(scene.lights[0], p);
-                if (sample.irradiance == Vec3(0.0f) || sample.toLight.y <= 1 / kMaxBiasSlope) continue;
-                shadowed += shadowFromRsm(maps[0], p, {0, 1, 0}, sample.toLight, DirectSettings{}.depthBiasTexels) != 1.0f;
-            }
-            CAPTURE(slant, kind);
-            CHECK(shadowed == 0);
-        }
-}
-
 TEST_CASE("shadow cones: open ground is lit, ground under a wide roof is dark", "[conetrace][direct]")
 {
     const OpacityAxes axes = GENERATE(OpacityAxes::isotropic, OpacityAxes::directional);
@@ -212,11 +108,11 @@ TEST_CASE("direct light: any number of threads gives the same bits", "[conetrace
     const std::vector<Rsm> maps = renderMaps(scene, 128);
     const OpacityPyramid opacity = voxels(scene, OpacityAxes::directional);
     const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {160, 90});
-    for (const Shadows mode : {Shadows::hard, Shadows::cone}) {
+    for (const Shadows mode : {Shadows::exact, Shadows::hard, Shadows::pcf, Shadows::cone}) {
         std::vector<DirectResult> results;
         for (const int threads : {1, 2, 8}) {
             const ThreadLimit limit(threads);
-            results.push_back(traceDirect(g, scene, directCamera(), maps, &opacity, kDirectNeeds, shadowsOf(mode)));
+            results.push_back(traceDirect(g, scene, directCamera(), depthsOf(maps), &opacity, kDirectNeeds, shadowsOf(mode)));
         }
         CHECK(results[0].radiance.texels == results[1].radiance.texels);
         CHECK(results[0].radiance.texels == results[2].radiance.texels);
@@ -229,8 +125,8 @@ TEST_CASE("direct light: intensity times 2^k gives exactly 2^k times the radianc
     scene.lights = {testLight(1)};
     const std::vector<Rsm> maps = renderMaps(scene, 128);
     const GBuffer g = renderGBuffer(scene, directCamera(), kDirectNeeds, {64, 36});
-    const DirectResult one = traceDirect(g, scene, directCamera(), maps, nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
+    const DirectResult one = traceDirect(g, scene, directCamera(), depthsOf(maps), nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
     scene.lights[0].intensity *= 4096.0f;
-    const DirectResult scaled = traceDirect(g, scene, directCamera(), maps, nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
+    const DirectResult scaled = traceDirect(g, scene, directCamera(), depthsOf(maps), nullptr, kDirectNeeds, shadowsOf(Shadows::hard));
     for (std::size_t i = 0; i < one.radiance.texels.size(); ++i) REQUIRE(scaled.radiance.texels[i] == 4096.0f * one.radiance.texels[i]);
 }

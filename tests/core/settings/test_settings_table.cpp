@@ -63,7 +63,7 @@ std::string otherValue(const SettingInfo& info, const std::string& current)
         const std::string first = info.allowed.substr(0, bar), last = info.allowed.substr(info.allowed.rfind(" | ") + 3);
         return current == first ? last : first;
     }
-    if (contains(info.allowed, "power of two")) return current == "64" ? "32" : "64";
+    if (contains(info.allowed, "power of two")) return current == "2" ? "4" : "2";
     if (contains(info.allowed, " .. ")) return current == "7" ? "5" : "7";
     return current == "0.3" ? "0.4" : "0.3";
 }

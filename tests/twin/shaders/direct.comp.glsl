@@ -1,26 +1,65 @@
-// Direct light, reflected once towards the eye. SHADOWS: 0 hard, 1 cone, 2 off.
+// Direct light, reflected once towards the eye. SHADOWS: 0 hard, 1 pcf, 2 cone, 3 off.
 
-layout(binding = 0) uniform sampler2DArray rsmDepth;
-layout(binding = 1) uniform usampler2DArray rsmRadiance;  // halves; the fourth is the coverage
+layout(binding = 0) uniform sampler2DArray mapDepth;  // of the RSMs, or of maps of their own
 layout(std430, binding = 7) writeonly buffer Out { float radianceOut[]; };
 uniform int lightCount;
 uniform vec3 origin;
-uniform float voxelSize, depthBiasTexels, flatBias, maxBiasSlope, tanHalfAperture, minSpecularAlpha;
+uniform float mapResolution, pcfWidthTexels, depthBiasTexels, flatBias, maxBiasSlope, snappingTexels, grazingCosine;
+uniform float voxelSize, tanHalfAperture, minSpecularAlpha;
 
-float hardShadow(int index, vec3 world, vec3 nGeometric, vec3 toLight)
+// The ray of a place on the map, in texels; in the light's frame, 1 along its axis.
+vec3 mapRay(Light light, vec2 at)
+{
+    float perTexel = 2.0 * light.right.w / mapResolution;
+    return vec3(at.x * perTexel - light.right.w, light.right.w - at.y * perTexel, 1.0);
+}
+
+// Is what a texel holds in front of the receiver's plane, as seen through the texel's centre?
+float texelShadow(int index, ivec2 texel, LightSpacePoint p, vec3 nGeometric)
 {
     Light light = lights[index];
-    LightSpacePoint p = projectToLight(light, world);
-    if (!p.valid || any(lessThan(p.uv, vec2(0))) || any(greaterThanEqual(p.uv, vec2(1)))) return 1.0;
-    ivec3 texel = ivec3(min(ivec2(p.uv * light.layers.z), ivec2(light.layers.z) - 1), index);
-    if (texelFetch(rsmRadiance, texel, 0).a == 0u) return 1.0;
-    float cosine = max(1e-3, dot(nGeometric, toLight));
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(mapResolution)))) return 1.0;
+    float stored = texelFetch(mapDepth, ivec3(texel, index), 0).r;
+    if (stored >= 1.0) return 1.0;
+    float range = light.forward.w - light.up.w, texelSize = p.texelSize * light.layers.z / mapResolution;
+    vec3 normal = vec3(dot(nGeometric, light.right.xyz), dot(nGeometric, light.up.xyz), dot(nGeometric, light.forward.xyz));
+    vec2 centre = vec2(texel) + 0.5, here = p.uv * mapResolution;
+    float cosine, plane;
+    if (light.position.w == 0.0) {
+        cosine = -normal.z;
+        plane = p.depth + (normal.x * (centre.x - here.x) - normal.y * (centre.y - here.y)) * texelSize / cosine / range;
+    } else {
+        vec3 ray = mapRay(light, centre), rayHere = mapRay(light, here);
+        cosine = -dot(normal, ray) / length(ray);
+        plane = ((p.depth * range + light.up.w) * (-dot(normal, rayHere) / length(rayHere) / cosine) - light.up.w) / range;
+    }
+    if (cosine < grazingCosine) return 1.0;
     float slope = sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
-    float bias = depthBiasTexels * p.texelSize * (min(slope, maxBiasSlope) + flatBias) / (light.forward.w - light.up.w) + 1.0 / 2097152.0;
+    float bias = texelSize / range * (depthBiasTexels * (min(slope, maxBiasSlope) + flatBias) + snappingTexels * slope);
+    bias += (1.0 + (light.position.w == 0.0 ? light.right.w : p.depth * range + light.up.w) / range) / 2097152.0;
 #ifdef PLANT_shadow_bias
     bias = 0.0;
+    plane = p.depth;
 #endif
-    return texelFetch(rsmDepth, texel, 0).r + bias < p.depth ? 0.0 : 1.0;
+    return stored + bias < plane ? 0.0 : 1.0;
+}
+
+float mapShadow(int index, vec3 world, vec3 nGeometric)
+{
+    LightSpacePoint p = projectToLight(lights[index], world);
+    if (!p.valid || any(lessThan(p.uv, vec2(0))) || any(greaterThanEqual(p.uv, vec2(1)))) return 1.0;
+#if SHADOWS == 0
+    return texelShadow(index, min(ivec2(p.uv * mapResolution), ivec2(mapResolution) - 1), p, nGeometric);
+#else
+    vec2 low = p.uv * mapResolution - 0.5 * pcfWidthTexels, high = low + pcfWidthTexels;
+    float sum = 0.0;
+    for (int y = int(floor(low.y)); float(y) < high.y; ++y)
+        for (int x = int(floor(low.x)); float(x) < high.x; ++x) {
+            vec2 overlap = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));
+            sum += overlap.x * overlap.y * texelShadow(index, ivec2(x, y), p, nGeometric);
+        }
+    return min(1.0, sum / (pcfWidthTexels * pcfWidthTexels));
+#endif
 }
 
 float coneShadow(vec3 world, vec3 nGeometric, vec3 toLight, float distance_)
@@ -71,9 +110,9 @@ void main()
 #ifndef PLANT_unclamped
             if (nDotL <= 0.0 || dot(nGeometric, from.toLight) <= 0.0) continue;
 #endif
-#if SHADOWS == 0
-            float visibility = hardShadow(k, world, nGeometric, from.toLight);
-#elif SHADOWS == 1
+#if SHADOWS < 2
+            float visibility = mapShadow(k, world, nGeometric);
+#elif SHADOWS == 2
             float visibility = coneShadow(world, nGeometric, from.toLight, from.distance_);
 #else
             float visibility = 1.0;
