@@ -63,7 +63,9 @@ Json sceneJson(const Capture& c)
     for (const Material& material : c.materials) materials.push_back(materialJson(material));
     return {{"name", c.sceneName},
             {"sha256", c.sceneHash},
-            {"bounds", c.sceneBounds.empty() ? Json(nullptr) : Json{{"min", vectorJson(c.sceneBounds.min)}, {"max", vectorJson(c.sceneBounds.max)}}},
+            {"origin", vectorJson(c.origin)},
+            {"bounds", boxJson(c.sceneBounds)},
+            {"reach", boxJson(c.sceneReach)},
             {"complete", c.sceneComplete},
             {"materials", materials}};
 }
@@ -225,6 +227,7 @@ Json manifestJson(const Capture& c)
             {"version", c.version},
             {"size", {c.width, c.height}},
             {"scene", sceneJson(c)},
+            {"pre_exposure", c.preExposure},
             {"settings", settingsToJson(c.settings)},
             {"requires", needs},
             {"camera", cameraJson(c)},

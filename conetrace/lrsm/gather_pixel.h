@@ -18,10 +18,14 @@ template <Estimator estimator, class Sampler, class Recorder>
 ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch& scratch,
                      ConeCounts& counts, Recorder& recorder)
 {
+    ConeResult cone;
     if constexpr (estimator == Estimator::slab)
-        return marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
+        cone = marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
     else
-        return marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
+        cone = marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
+    // All maps have the scene's one pre-exposure: a power of two, so that this changes exponents alone.
+    if (!world.lrsms.empty()) cone.radiance *= 1.0f / world.lrsms.front().preExposure;
+    return cone;
 }
 
 inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
