@@ -7,12 +7,15 @@ namespace {
 
 double brightestIrradiance(const Scene& scene)
 {
-    const Vec3 extent = scene.bounds.empty() ? Vec3(1.0f) : (reachIsPart(scene) ? scene.reach : scene.bounds).extent();
+    const Aabb box = scene.bounds.empty() ? Aabb{Vec3(0.0f), Vec3(1.0f)} : reachIsPart(scene) ? scene.reach : scene.bounds;
+    const Vec3 extent = box.extent();
     const double size = double(std::max({extent.x, extent.y, extent.z}));
     double brightest = 0.0;
     for (const Light& light : scene.lights) {
         const double intensity = double(std::max({light.intensity.x, light.intensity.y, light.intensity.z}));
-        brightest = std::max(brightest, light.type == LightType::directional || !(size > 0.0) ? intensity : intensity / (size * size));
+        const Vec3 off = light.position - glm::clamp(light.position, box.min, box.max);
+        const double distance = std::max(size, std::sqrt(glm::dot(glm::dvec3(off), glm::dvec3(off))));
+        brightest = std::max(brightest, light.type == LightType::directional || !(distance > 0.0) ? intensity : intensity / (distance * distance));
     }
     return brightest;
 }

@@ -240,4 +240,7 @@ TEST_CASE("pre-exposure: a power of two, 1 where light is ordinary, inverse to i
     }
     scene.lights[0].intensity = Vec3(0.0f);
     CHECK(preExposureOf(scene) == 1.0f);
+    scene.lights[0].position.y = 1e9f;  // far off and as bright as it must be
+    scene.lights[0].intensity = Vec3(1e18f);
+    CHECK(preExposureOf(scene) == 1.0f);
 }
