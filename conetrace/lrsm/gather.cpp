@@ -123,7 +123,7 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
 
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
-    const ConeWorld world{opacity, lrsms, settings, phi};
+    const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     ConeCounts counts;
     if (settings.march.estimator == Estimator::slab)
         gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record, counts});

@@ -30,7 +30,7 @@ ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeR
 
 inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
 {
-    return {receiver.originWorld, receiver.originVoxels, direction, receiver.geometricNormal};
+    return {.originWorld = receiver.originWorld, .originVoxels = receiver.originVoxels, .direction = direction, .receiverNormal = receiver.geometricNormal};
 }
 
 /// A recorder is told what it has functions for: cone() before a cone, result() after it; with `active` also its steps and layers.

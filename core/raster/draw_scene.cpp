@@ -83,7 +83,7 @@ SceneFragments drawScene(const Scene& scene, const Mat4& clipFromWorld, const Re
     }
 
     const std::vector<FarVertex> far = farVertices(scene, clipFromWorld, all);
-    RasterOutput drawn = rasterize({all.clipPositions, all.triangles, all.cull, far}, width, height, all.tested,
+    RasterOutput drawn = rasterize({.clipPositions = all.clipPositions, .triangles = all.triangles, .cull = all.cull, .far = far}, width, height, all.tested,
                                    [&](const Fragment& fragment) { return passesAlphaTest(scene, hitOf(all.firstTriangle, fragment)); });
     return {std::move(drawn.fragments), drawn.counts, std::move(all.firstTriangle)};
 }
@@ -92,7 +92,7 @@ SurfaceHit hitOf(const std::vector<std::uint32_t>& firstTriangle, const Fragment
 {
     const auto next = std::upper_bound(firstTriangle.begin(), firstTriangle.end(), fragment.triangle);
     const auto mesh = static_cast<std::uint32_t>(next - firstTriangle.begin() - 1);
-    return {mesh, fragment.triangle - firstTriangle[mesh], fragment.b1, fragment.b2};
+    return {.mesh = mesh, .triangle = fragment.triangle - firstTriangle[mesh], .b1 = fragment.b1, .b2 = fragment.b2};
 }
 
 Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
