@@ -1,3 +1,4 @@
+#include "conetrace/frame/gbuffer.h"
 #include "conetrace/render.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/exposure.h"
@@ -170,4 +171,26 @@ TEST_CASE("voxels: triangles of zero area stop no cone", "[conetrace][voxel]")
     }
     mesh.triangles.push_back({first, first + 1, first + 2});
     CHECK(sameBits(renderExtent(scene).irradiance, renderExtent(stitched).irradiance));
+}
+
+TEST_CASE("extent: a plane of 10 km a centimetre below a floor is not drawn through it", "[conetrace][extent][raster]")
+{
+    Scene scene;
+    addQuad(addMesh(scene), Vec3(-2, 0, 2), Vec3(2, 0, 2), Vec3(2, 0, -2), Vec3(-2, 0, -2));
+    const float half = GENERATE(50.0f, 500.0f, 5000.0f, 20000.0f);
+    addQuad(addMesh(scene), Vec3(-half, -0.01f, half), Vec3(half, -0.01f, half), Vec3(half, -0.01f, -half), Vec3(-half, -0.01f, -half));
+    updateBounds(scene);
+    const Camera camera = lookAt(Vec3(0.6f, 1.4f, 4.2f), Vec3(0.6f, 0.9f, -2.0f), Vec3(0, 1, 0), 0.8f);
+    const GBuffer gbuffer = renderGBuffer(scene, camera, {}, {96, 54});
+    std::size_t floor = 0;
+    for (int y = 0; y < 54; ++y)
+        for (int x = 0; x < 96; ++x) {
+            const CameraRay ray = pixelRay(camera, 96, 54, float(x) + 0.5f, float(y) + 0.5f);
+            if (!(ray.direction.y < 0.0f)) continue;
+            const Vec3 met = ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
+            if (std::abs(met.x) > 1.9f || std::abs(met.z) > 1.9f) continue;
+            ++floor;
+            CHECK(gbuffer.position.at(x, y).y == 0.0f);
+        }
+    CHECK(floor > 300);
 }
