@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/scene/check_scene.h"
+#include "core/scene/invisible.h"
 #include "voxel/voxelize_triangle.h"
 
 #include <bit>
@@ -96,6 +97,7 @@ BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
     checkBounds(scene.bounds);
     BitGrid bits = emptyGrid(gridOf(scene, settings));
     for (const Mesh& mesh : scene.meshes) {
+        if (isDrawnNowhere(scene, mesh)) continue;
         voxelizeInto(bits, mesh.triangles.size(), settings.mode, NoArea::skip, [&](std::size_t i) {
             const auto& t = mesh.triangles[i];
             return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};

@@ -13,7 +13,8 @@ VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings);
 /// `thin`: Schwarz and Seidel 2010's 6-separating test, a subset; `raster`: projection along the dominant axis sampled at pixel centres,
 /// what [CG12] does without conservative rasterization (it has holes).
 /// Triangles with a non-finite vertex are dropped, and those no wider than the rounding of their corners (no area). Independent of thread count.
-/// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it.
+/// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it; unless its mesh is drawn
+/// nowhere.
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
 
 /// The same for one bare triangle list in world space: what tests drive. Triangles of no area voxelize as the segment or point they are.

@@ -1,6 +1,7 @@
 #include "core/scene/coarse_view.h"
 
 #include "core/base/elementary.h"
+#include "core/scene/invisible.h"
 
 #include <array>
 
@@ -72,6 +73,7 @@ class Caster {
     void cast(std::uint32_t m)
     {
         const Mesh& mesh = scene_.meshes[m];
+        if (isDrawnNowhere(scene_, mesh)) return;
         const bool doubleSided = scene_.materials[std::size_t(mesh.material)].doubleSided;
         for (const auto& triangle : mesh.triangles) {
             std::array<DVec3, 3> corners;

@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
 #include "core/scene/gltf_document.h"
+#include "core/scene/invisible.h"
 #include "core/scene/pose_asset.h"
 #include "core/scene/reach.h"
 
@@ -193,40 +194,11 @@ void noteLostDigits(const Asset& asset, const LoadOptions& options, Scene& scene
     scene.notes.emplace_back(text);
 }
 
-/// The largest alpha that a mesh can have anywhere: factor, vertex colours, texels (a filtered one is no larger).
-float largestAlpha(const Scene& scene, const lrsm::Mesh& mesh)
-{
-    const Material& material = scene.materials[std::size_t(mesh.material)];
-    float alpha = material.baseColor.w;
-    if (!mesh.colors.empty()) {
-        float most = 0.0f;
-        for (const Vec4& color : mesh.colors) most = std::max(most, color.w);
-        alpha *= most;
-    }
-    if (material.baseColorTexture) {
-        std::uint8_t most = 0;
-        for (const Rgba8& texel : scene.textures[std::size_t(material.baseColorTexture.texture)].image.texels) most = std::max(most, texel.a);
-        alpha *= float(most) / 255.0f;
-    }
-    return alpha;
-}
-
-/// What no pixel shows must stop no cone either.
-void leaveOutInvisible(Scene& scene)
+void noteInvisible(Scene& scene)
 {
     std::size_t triangles = 0;
-    std::erase_if(scene.meshes, [&](const lrsm::Mesh& mesh) {
-        const Material& material = scene.materials[std::size_t(mesh.material)];
-        const bool invisible = material.alphaMask && largestAlpha(scene, mesh) < material.alphaCutoff;
-        triangles += invisible ? mesh.triangles.size() : 0;
-        return invisible;
-    });
-    if (triangles == 0) return;
-    scene.bounds = {};
-    for (const lrsm::Mesh& mesh : scene.meshes)
-        for (const auto& triangle : mesh.triangles)
-            for (const std::uint32_t v : triangle) scene.bounds.include(mesh.positions[v]);
-    scene.notes.push_back(countOf(triangles, "triangle") + " left out: their alpha is below its cutoff everywhere");
+    for (const lrsm::Mesh& mesh : scene.meshes) triangles += isDrawnNowhere(scene, mesh) ? mesh.triangles.size() : 0;
+    if (triangles > 0) scene.notes.push_back(countOf(triangles, "triangle") + " drawn nowhere, and no obstacle to cones: alpha is below its cutoff everywhere");
 }
 
 }  // namespace
@@ -246,8 +218,7 @@ Scene loadGltf(const std::string& path, const LoadOptions& options)
     scene.name = std::filesystem::path(path).filename().string();
     gltf::checkHasArea(scene, path);
     gltf::decodeTextures(asset, scene);
-    gltf::leaveOutInvisible(scene);
-    if (scene.meshes.empty()) throw InputError(path, "no triangle of the scene is visible: every alpha is below its cutoff");
+    gltf::noteInvisible(scene);
     return scene;
 }
 

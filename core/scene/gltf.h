@@ -21,8 +21,7 @@ struct LoadOptions {
 
 /// Throws InputError "FILE: JSON path: why" for a file that is no valid glTF, that requires an extension unknown here, or that has
 /// no triangle of positive area. A scene without lights or camera gets default ones (defaults.h). Textures are decoded only where a
-/// triangle's material uses them. A scene far from 0 gets an origin (Scene::origin): everything is subtracted in double, once. Meshes whose alpha is below its
-/// cutoff everywhere are left out. The result does not depend on the number of threads.
+/// triangle's material uses them. A scene far from 0 gets an origin (Scene::origin): it is subtracted in double, once. The result does not depend on the number of threads.
 Scene loadGltf(const std::string& path, const LoadOptions& options);
 
 /// The camera of that name, else of that index ("0" the first). InputError lists the ones there are.

@@ -3,6 +3,7 @@
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/coarse_view.h"
 #include "core/scene/exposure.h"
+#include "core/scene/invisible.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/shapes.h"
 #include "core/scene/view_file.h"
@@ -208,24 +209,23 @@ TEST_CASE("origin: a view file's places are subtracted before they are rounded",
     CHECK(view.lights->at(0).position.x == Approx(0.3f).epsilon(1e-6));
 }
 
-TEST_CASE("loading: what is drawn nowhere is left out, and said", "[scene][gltf]")
+TEST_CASE("alpha: a mesh below its cutoff everywhere is drawn nowhere, and said so", "[scene][gltf]")
 {
     GltfBuilder file;
-    const int other = file.add<float>({0, 0, 5, 1, 0, 5, 0, 1, 5}, "VEC3", 5126);
-    file.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", other}}}, {"material", 0}});
-    const auto withAlpha = [&](double alpha, const char* mode) {
+    const auto load = [&](double alpha, const char* mode, float colorAlpha) {
         file.json["materials"] = {{{"alphaMode", mode}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}}};
-        return file.load();
+        file.primitive()["material"] = 0;
+        file.attributes()["COLOR_0"] = file.add<float>({1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, colorAlpha}, "VEC4", 5126);
+        const Scene scene = file.load();
+        const bool nowhere = isDrawnNowhere(scene, scene.meshes.at(0));
+        CHECK((scene.notes.back() == "1 triangle drawn nowhere, and no obstacle to cones: alpha is below its cutoff everywhere") == nowhere);
+        return nowhere;
     };
-    const Scene seen = withAlpha(0.6, "BLEND"), unseen = withAlpha(0.4, "BLEND"), opaque = withAlpha(0.4, "OPAQUE");
-    CHECK(seen.meshes.size() == 2);
-    CHECK(opaque.meshes.size() == 2);
-    REQUIRE(unseen.meshes.size() == 1);
-    CHECK(unseen.bounds.max.z == 0.0f);
-    CHECK(unseen.notes.back() == "1 triangle left out: their alpha is below its cutoff everywhere");
-    file.json["meshes"][0]["primitives"].erase(0);
-    file.json["materials"][0]["alphaMode"] = "BLEND";
-    CHECK(file.error().find("every alpha is below its cutoff") != std::string::npos);
+    CHECK_FALSE(load(0.6, "BLEND", 1.0f));
+    CHECK(load(0.4, "BLEND", 1.0f));
+    CHECK(load(0.6, "BLEND", 0.7f));
+    CHECK_FALSE(load(0.5, "MASK", 1.0f));
+    CHECK_FALSE(load(0.1, "OPAQUE", 1.0f));
 }
 
 TEST_CASE("pre-exposure: a power of two, 1 where light is ordinary, inverse to it elsewhere", "[scene][exposure]")
