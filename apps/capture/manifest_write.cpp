@@ -74,7 +74,7 @@ Json cameraJson(const Capture& c)
 {
     Json json = cameraJson(c.camera, Angle::radians);
     json["right"] = vectorJson(glm::normalize(glm::cross(c.camera.forward, c.camera.up)));
-    json["clip_from_world"] = rowsOf(clipFromWorld(c.camera, c.width, c.height, c.sceneBounds));
+    json["clip_from_world"] = rowsOf(clipFromWorld(c.camera, c.width, c.height, c.sceneReach.empty() ? c.sceneBounds : c.sceneReach));
     return json;
 }
 
