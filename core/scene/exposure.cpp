@@ -27,7 +27,8 @@ float preExposureOf(const Scene& scene)
     constexpr int kLargestExponent = 100;  // both the factor and its inverse stay normal floats
     const double brightest = brightestIrradiance(scene);
     if (!(brightest > 0.0) || !std::isfinite(brightest) || (brightest >= kOrdinaryIrradianceMin && brightest <= kOrdinaryIrradianceMax)) return 1.0f;
-    return std::ldexp(1.0f, std::clamp(-std::ilogb(brightest), -kLargestExponent, kLargestExponent));
+    const int target = brightest < kOrdinaryIrradianceMin ? std::ilogb(kOrdinaryIrradianceMin) : 0;
+    return std::ldexp(1.0f, std::clamp(target - std::ilogb(brightest), -kLargestExponent, kLargestExponent));
 }
 
 }  // namespace lrsm

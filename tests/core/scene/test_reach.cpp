@@ -236,7 +236,7 @@ TEST_CASE("pre-exposure: a power of two, 1 where light is ordinary, inverse to i
         scene.lights[0].intensity = Vec3(std::ldexp(1.5f * size * size, power));
         const float exposure = preExposureOf(scene);
         INFO("2^" << power);
-        CHECK(exposure == (power >= -6 && power < 8 ? 1.0f : std::ldexp(1.0f, -power)));
+        CHECK(exposure == (power >= -6 && power < 8 ? 1.0f : std::ldexp(1.0f, power < 0 ? -6 - power : -power)));
     }
     scene.lights[0].intensity = Vec3(0.0f);
     CHECK(preExposureOf(scene) == 1.0f);
