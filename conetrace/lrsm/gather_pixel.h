@@ -23,8 +23,7 @@ ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeR
         cone = marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
     else
         cone = marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
-    // All maps have the scene's one pre-exposure: a power of two, so that this changes exponents alone.
-    if (!world.lrsms.empty()) cone.radiance *= 1.0f / world.lrsms.front().preExposure;
+    cone.radiance *= unexposed(world);
     return cone;
 }
 
