@@ -27,6 +27,7 @@ float largestAlpha(const Scene& scene, const Mesh& mesh)
 
 bool isDrawnNowhere(const Scene& scene, const Mesh& mesh)
 {
+    if (std::size_t(mesh.material) >= scene.materials.size()) return false;  // bare triangles
     const Material& material = scene.materials[std::size_t(mesh.material)];
     return material.alphaMask && largestAlpha(scene, mesh) < material.alphaCutoff;
 }
