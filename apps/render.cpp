@@ -3,6 +3,7 @@
 #include "apps/common/describe.h"
 #include "apps/common/frame_files.h"
 #include "apps/common/memory.h"
+#include "apps/common/messages.h"
 #include "apps/common/progress.h"
 #include "apps/validate/split.h"
 #include "core/base/errors.h"
@@ -69,6 +70,8 @@ int runRender(const RenderArguments& options)
     MemoryQuestion memory{scene, needs, settings, size.x, size.y};
     enforceMemoryLimit(memory, options.maxMemoryMegabytes);
 
+    say(loadMessages(scene));
+    say(extentMessages(scene, camera, settings));
     if (pixel) std::cout << explainPixel(scene, camera, settings, renderOptions, pixel->x, pixel->y);
     if (!folder) return 0;
 
@@ -92,6 +95,8 @@ int runRender(const RenderArguments& options)
     writeFrame(*folder, frame, record, json);
     folder->commit();
     progress.clear();
+    say(passMessages(frame.passes));
+    say(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
 
     if (options.json)
         std::cout << jsonText(json);

@@ -28,6 +28,7 @@ struct alignas(16) LrsmTexel {
 /// Layered reflective shadow map of one light: every layer's full mip chain.
 struct Lrsm {
     LightProjection projection;
+    float preExposure = 1.0f;              ///< the RSM's: what all radiance here is multiplied by
     int baseResolution = 1;                ///< half the RSM's
     std::vector<LayerRange> ranges;        ///< of the layers kept
     std::vector<std::size_t> levelOffset;  ///< first texel of each level within a layer

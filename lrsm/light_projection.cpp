@@ -25,14 +25,19 @@ void widenEmptyRange(LightProjection& projection)
     projection.depthFar = std::max(projection.depthFar, projection.depthNear + least);
 }
 
-void fitDirectional(LightProjection& projection, const Aabb& bounds)
+/// Bounds of a box along the light's axes.
+Aabb alongLight(const LightProjection& projection, const Aabb& box)
 {
-    Vec3 low(kInfinity), high(-kInfinity);
-    for (const Vec3& corner : cornersOf(bounds)) {
-        const Vec3 inLight(glm::dot(corner, projection.right), glm::dot(corner, projection.up), glm::dot(corner, projection.forward));
-        low = glm::min(low, inLight);
-        high = glm::max(high, inLight);
-    }
+    Aabb inLight;
+    for (const Vec3& corner : cornersOf(box))
+        inLight.include(Vec3(glm::dot(corner, projection.right), glm::dot(corner, projection.up), glm::dot(corner, projection.forward)));
+    return inLight;
+}
+
+void fitDirectional(LightProjection& projection, const Aabb& bounds, const Aabb& sceneBounds)
+{
+    const Aabb box = alongLight(projection, bounds);
+    const Vec3 low(box.min.x, box.min.y, alongLight(projection, sceneBounds).min.z), high = box.max;
 
     // One texel more than the bounds need pays for moving the centre to a whole texel of the light's world-fixed lattice.
     // A map thinner than a millionth of the scene (a line along the light) would be all rounding.
@@ -47,9 +52,9 @@ void fitDirectional(LightProjection& projection, const Aabb& bounds)
     projection.depthFar = high.z - low.z;
 }
 
-void fitPerspective(LightProjection& projection, const Aabb& bounds)
+void fitPerspective(LightProjection& projection, const Aabb& bounds, const Aabb& sceneBounds)
 {
-    const Vec3 closest = glm::clamp(projection.position, bounds.min, bounds.max);
+    const Vec3 closest = glm::clamp(projection.position, sceneBounds.min, sceneBounds.max);
     projection.depthNear = glm::length(closest - projection.position);
     projection.depthFar = projection.depthNear;
     for (const Vec3& corner : cornersOf(bounds)) projection.depthFar = std::max(projection.depthFar, glm::length(corner - projection.position));
@@ -75,7 +80,14 @@ void setRow(Mat4& m, int row, const Vec3& axis, const Vec3& origin, float scale,
 
 LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution)
 {
-    const Aabb bounds = sceneBounds.empty() ? Aabb{Vec3(0.0f), Vec3(0.0f)} : sceneBounds;
+    return fitLightProjection(light, sceneBounds, sceneBounds, resolution);
+}
+
+LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution)
+{
+    const Aabb point{Vec3(0.0f), Vec3(0.0f)};
+    const Aabb& whole = sceneBounds.empty() ? point : sceneBounds;
+    const Aabb& bounds = fitted.empty() ? whole : fitted;
     LightProjection projection;
     projection.type = light.type;
     projection.position = light.position;
@@ -84,14 +96,14 @@ LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, 
     projection.up = glm::cross(projection.right, light.direction);
     projection.resolution = std::max(resolution, 2);
     switch (light.type) {
-    case LightType::directional: fitDirectional(projection, bounds); break;
+    case LightType::directional: fitDirectional(projection, bounds, whole); break;
     case LightType::spot:
         projection.halfWidth = static_cast<float>(tangent(light.outerConeAngle));
-        fitPerspective(projection, bounds);
+        fitPerspective(projection, bounds, whole);
         break;
     case LightType::cubeFace:
         projection.halfWidth = 1.0f;
-        fitPerspective(projection, bounds);
+        fitPerspective(projection, bounds, whole);
         break;
     }
     widenEmptyRange(projection);

@@ -7,8 +7,8 @@ namespace lrsm {
 
 /// How a light sees the world: RSM texture coordinates and linear depth.
 /// u right, v down, both in [0, 1] over the map. Linear depth in [0, 1] over [depthNear, depthFar] metres: distance from the light for a spot or
-/// cube face, distance along the axis (from `position`) for a directional light. Ranges are those of the scene's bounds, so subtracting
-/// depthNear keeps precision for a far light.
+/// cube face, distance along the axis (from `position`) for a directional light. Ranges begin where the scene's bounds do, so subtracting
+/// depthNear keeps precision for a far light, and end where the fitted box does.
 struct LightProjection {
     LightType type = LightType::directional;
     Vec3 position{0.0f};                                                             ///< world; directional: centre of the near side of the fitted box
@@ -25,6 +25,9 @@ struct LightProjection {
 /// Widths, depths and the centre's lattice keep kFitMaxError for scenes of some metres.
 inline constexpr float kFitMaxError = 1e-6f;
 LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution);
+
+/// The same for the part `fitted` of the scene: width and far end are its, and what stands between it and the light is still within the range.
+LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution);
 
 struct LightSpacePoint {
     float u = 0.0f, v = 0.0f;  ///< [0, 1] inside the map

@@ -249,6 +249,7 @@ Lrsm buildLrsm(const Rsm& rsm, const LayerSettings& settings, const std::vector<
 {
     Lrsm lrsm;
     lrsm.projection = rsm.projection;
+    lrsm.preExposure = rsm.preExposure;
     lrsm.baseResolution = rsm.texels.width / 2;
     lrsm.layersAsked = static_cast<int>(all.size());
     std::vector<int> keptIndex(all.size(), kNotKept);

@@ -5,7 +5,9 @@
 #include "core/base/parallel.h"
 #include "core/raster/draw_scene.h"
 #include "core/scene/check_scene.h"
+#include "core/scene/exposure.h"
 #include "core/scene/light.h"
+#include "lrsm/casters.h"
 
 #include <bit>
 #include <cassert>
@@ -37,6 +39,18 @@ ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const Ligh
     return shaded;
 }
 
+bool coversPart(const Scene& scene, const RsmSettings& settings)
+{
+    return settings.extent == Extent::reach && reachIsPart(scene);
+}
+
+/// Farther than the range that the map was fitted to: it stays empty there, so that what lies beyond is lit and reflects nothing.
+bool isBeyond(const LightProjection& projection, const Vec3& pWorld)
+{
+    constexpr float kRounding = 0x1p-16f;
+    return projectToLight(projection, pWorld).depth > 1.0f + kRounding;
+}
+
 void toHalf(RsmTexel& texel, HalfRounding rounding, ConversionCounts& counts)
 {
     for (int k = 0; k < 3; ++k) texel.radiance[k] = roundToHalf(texel.radiance[k], rounding, counts);
@@ -54,6 +68,12 @@ Counters countersOf(const Rsm& rsm)
     return counters;
 }
 
+LightProjection projectionOf(const Scene& scene, const Light& light, const RsmSettings& settings)
+{
+    if (!coversPart(scene, settings)) return fitLightProjection(light, scene.bounds, settings.resolution);
+    return fitLightProjection(light, scene.reach, withCasters(scene.reach, scene, light), settings.resolution);
+}
+
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings, TextureFilter textureFilter)
 {
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)) && settings.resolution >= 2);
@@ -63,13 +83,15 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
     Rsm rsm;
     requireMemory(Rsm::predictBytes(settings.resolution) + std::size_t(settings.resolution) * std::size_t(settings.resolution) * sizeof(Fragment),
                   "reflective shadow map of light \"" + light.name + "\"", "lower rsm_resolution, or take fewer lights");
-    rsm.projection = fitLightProjection(light, scene.bounds, settings.resolution);
+    const bool part = coversPart(scene, settings);
+    rsm.projection = projectionOf(scene, light, settings);
     const int n = rsm.projection.resolution;
     const SceneFragments drawn = drawScene(scene, clipFromWorld(rsm.projection), needs, n, n);
     rsm.raster = drawn.counts;
     rsm.texels = Image<RsmTexel>(n, n);
     rsm.depthLinear = Image<float>(n, n, 1.0f);
 
+    rsm.preExposure = preExposureOf(scene);
     const LightSampler sampler(light);
     constexpr std::size_t kChunk = 8192;
     const std::size_t count = rsm.texels.texels.size();
@@ -78,7 +100,9 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
         for (std::size_t i = begin; i < end; ++i) {
             const Fragment& fragment = drawn.fragments.texels[i];
             if (fragment.triangle == kNoTriangle) continue;
+            if (part && isBeyond(rsm.projection, positionOf(scene, hitOf(drawn.firstTriangle, fragment)))) continue;
             ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hitOf(drawn.firstTriangle, fragment), textureFilter);
+            shaded.texel.radiance *= rsm.preExposure;
             if (settings.storage == Storage::gpu) toHalf(shaded.texel, settings.halfRounding, counts[begin / kChunk]);
             rsm.texels.texels[i] = shaded.texel;
             rsm.depthLinear.texels[i] = shaded.depth;

@@ -11,7 +11,7 @@ namespace lrsm {
 
 /// One texel of a reflective shadow map, in the values its storage holds (storage = gpu: each component is representable as half; depth is float32).
 struct RsmTexel {
-    Vec3 radiance{0.0f};    ///< rho L_d <n.l> / pi, W/(m^2 sr)
+    Vec3 radiance{0.0f};    ///< rho L_d <n.l> / pi, W/(m^2 sr), times Rsm::preExposure
     float coverage = 0.0f;  ///< 1 where a surface was drawn
     Vec3 normal{0.0f};      ///< unit before rounding, towards the light
     float nDotL = 0.0f;     ///< of the geometric situation at the texel, in [0, 1]
@@ -21,6 +21,7 @@ struct Rsm {
     LightProjection projection;
     Image<RsmTexel> texels;
     Image<float> depthLinear;  ///< [0, 1]; 1 where empty
+    float preExposure = 1.0f;  ///< what `radiance` is multiplied by (preExposureOf)
     RasterCounts raster;
     ConversionCounts conversions;
 
@@ -51,7 +52,11 @@ inline Vec3 reflectedRadiance(const Vec3& albedo, const Vec3& irradiance, float 
 /// What a whole map keeps, rasterized and lit in float: radiance over that straight below the light; relative depth, and <n.l>.
 inline constexpr float kRsmRadianceMaxError = 1e-5f, kRsmDepthMaxError = 3e-6f;
 
-/// Renders the scene from one light (Sec. 3.2, [DS05]).
+/// How the light's map of this scene lies.
+LightProjection projectionOf(const Scene& scene, const Light& light, const RsmSettings& settings);
+
+/// Renders the scene from one light (Sec. 3.2, [DS05]): all of it, or its reach (settings.extent) with what stands before it. Texels whose surface lies
+/// beyond the reach stay empty.
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings,
               TextureFilter textureFilter = TextureFilter::trilinear);
 

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/scene/check_scene.h"
+#include "core/scene/invisible.h"
 #include "voxel/voxelize_triangle.h"
 
 #include <bit>
@@ -31,14 +32,30 @@ BitGrid emptyGrid(const VoxelGrid& grid)
     return bits;
 }
 
+/// No wider than the rounding of its corners: what joins strips of triangles, or has collapsed. Neither eye nor light ever meets it, so no cone must.
+/// NaN passes: fixedFromWorld drops it.
+bool hasNoArea(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+    constexpr double kRoundings = 0x1p-22;  // four units in the last place
+    using DVec3 = glm::dvec3;
+    const DVec3 ab = DVec3(b) - DVec3(a), ac = DVec3(c) - DVec3(a), bc = ac - ab, normal = glm::cross(ab, ac);
+    const double longest2 = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
+    const Vec3 largest = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
+    const double rounding = kRoundings * double(std::max({largest.x, largest.y, largest.z}));
+    return glm::dot(normal, normal) <= rounding * rounding * longest2;
+}
+
+enum class NoArea { skip, keep };
+
 /// corners(i) gives the three world positions of triangle i.
 template <class Corners>
-void voxelizeInto(BitGrid& bits, std::size_t count, Voxelization mode, const Corners& corners)
+void voxelizeInto(BitGrid& bits, std::size_t count, Voxelization mode, NoArea noArea, const Corners& corners)
 {
     std::vector<std::vector<TriangleSetup>> bigOfChunk((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
     parallelFor(count, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::array<Vec3, 3> p = corners(i);
+            if (noArea == NoArea::skip && hasNoArea(p[0], p[1], p[2])) continue;
             const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], bits.grid);
             for (int k = 0; k < pieces.count; ++k) {
                 const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], bits.grid.resolution, mode);
@@ -69,13 +86,19 @@ void voxelizeInto(BitGrid& bits, std::size_t count, Voxelization mode, const Cor
 
 }  // namespace
 
+VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings)
+{
+    return fitVoxelGrid(settings.extent == Extent::reach && reachIsPart(scene) ? scene.reach : scene.bounds, settings.resolution);
+}
+
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 {
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)));
     checkBounds(scene.bounds);
-    BitGrid bits = emptyGrid(fitVoxelGrid(scene.bounds, settings.resolution));
+    BitGrid bits = emptyGrid(gridOf(scene, settings));
     for (const Mesh& mesh : scene.meshes) {
-        voxelizeInto(bits, mesh.triangles.size(), settings.mode, [&](std::size_t i) {
+        if (isDrawnNowhere(scene, mesh)) continue;
+        voxelizeInto(bits, mesh.triangles.size(), settings.mode, NoArea::skip, [&](std::size_t i) {
             const auto& t = mesh.triangles[i];
             return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
         });
@@ -86,7 +109,9 @@ BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode)
 {
     BitGrid bits = emptyGrid(grid);
-    voxelizeInto(bits, corners.size() / 3, mode, [&](std::size_t i) { return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; });
+    voxelizeInto(bits, corners.size() / 3, mode, NoArea::keep, [&](std::size_t i) {
+        return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    });
     return bits;
 }
 

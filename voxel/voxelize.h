@@ -6,14 +6,18 @@
 
 namespace lrsm {
 
+/// The grid of a scene: about its reach, or all of it (settings.extent).
+VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings);
+
 /// Scene -> binary occupancy (Sec. 3.2). `conservative`: exactly the voxels whose closed box the closed triangle overlaps (26-separating);
 /// `thin`: Schwarz and Seidel 2010's 6-separating test, a subset; `raster`: projection along the dominant axis sampled at pixel centres,
 /// what [CG12] does without conservative rasterization (it has holes).
-/// Triangles with a non-finite vertex are dropped; degenerate ones voxelize as the segment or point they are. Independent of thread count.
-/// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it.
+/// Triangles with a non-finite vertex are dropped, and those no wider than the rounding of their corners (no area). Independent of thread count.
+/// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it; unless its mesh is drawn
+/// nowhere.
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
 
-/// The same for one bare triangle list in world space: what tests drive.
+/// The same for one bare triangle list in world space: what tests drive. Triangles of no area voxelize as the segment or point they are.
 BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode);
 
 }  // namespace lrsm

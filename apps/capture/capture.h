@@ -45,8 +45,10 @@ struct Blessing {
 struct Capture {
     std::string version;               ///< of the program
     std::string sceneName, sceneHash;  ///< hashScene
-    Aabb sceneBounds;
-    bool sceneComplete = false;  ///< the scene's buffers are all of it: it has no textures
+    Aabb sceneBounds, sceneReach;      ///< Scene::bounds, Scene::reach
+    glm::dvec3 origin{0.0};            ///< Scene::origin: all places count from it
+    float preExposure = 1.0f;          ///< preExposureOf the scene: what the radiance of RSMs and LRSMs is multiplied by
+    bool sceneComplete = false;        ///< the scene's buffers are all of it: it has no textures
     Settings settings;
     Requirements needs;
     int width = 0, height = 0;

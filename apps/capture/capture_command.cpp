@@ -6,6 +6,7 @@
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/common/memory.h"
+#include "apps/common/messages.h"
 #include "apps/common/progress.h"
 #include "conetrace/lrsm/memory.h"
 #include "core/base/errors.h"
@@ -87,6 +88,13 @@ int run(const Options& options)
         .width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds, .progress = [&](const std::string& pass, double fraction) {
             progress.show(pass, fraction);
         }};
+    record.finished = [&](const Frame& frame) {
+        progress.clear();
+        say(passMessages(frame.passes));
+        say(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
+    };
+    say(loadMessages(scene));
+    say(extentMessages(scene, camera, settings));
     const std::size_t predicted = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, layersKept({scene, needs, settings, size.x, size.y})));
     refuseFullDisk(folder, predicted);
     if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(predicted) << std::endl;

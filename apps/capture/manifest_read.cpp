@@ -47,6 +47,11 @@ Material material(const JsonReader& in)
     return m;
 }
 
+Aabb box(const JsonReader& in)
+{
+    return in.isNull() ? Aabb{} : Aabb{in["min"].vector(), in["max"].vector()};
+}
+
 Requirements requirements(const JsonReader& in)
 {
     return {in["specular"].flag(), in["alpha_test"].flag(), in["normal_maps"].flag(), in["textures"].flag(), in["vertex_colors"].flag(), {}};
@@ -209,9 +214,14 @@ Capture captureFromManifest(const nlohmann::ordered_json& manifest, const std::s
     const JsonReader scene = in["scene"];
     c.sceneName = scene["name"].text();
     c.sceneHash = scene["sha256"].text();
-    if (!scene["bounds"].isNull()) c.sceneBounds = {scene["bounds"]["min"].vector(), scene["bounds"]["max"].vector()};
+    const auto origin = scene["origin"].items(3);
+    c.origin = {origin[0].number(), origin[1].number(), origin[2].number()};
+    c.sceneBounds = box(scene["bounds"]);
+    c.sceneReach = box(scene["reach"]);
     c.sceneComplete = scene["complete"].flag();
     for (const JsonReader& item : scene["materials"].items()) c.materials.push_back(material(item));
+    c.preExposure = in["pre_exposure"].real();
+    if (!(c.preExposure > 0.0f)) in["pre_exposure"].fail("must be above 0");
     applySettingsJson(c.settings, in["settings"].json(), in["settings"].path());
     validate(c.settings);
     c.needs = requirements(in["requires"]);

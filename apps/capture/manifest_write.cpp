@@ -64,7 +64,9 @@ Json sceneJson(const Capture& c)
     for (const Material& material : c.materials) materials.push_back(materialJson(material));
     return {{"name", c.sceneName},
             {"sha256", c.sceneHash},
-            {"bounds", c.sceneBounds.empty() ? Json(nullptr) : Json{{"min", vectorJson(c.sceneBounds.min)}, {"max", vectorJson(c.sceneBounds.max)}}},
+            {"origin", vectorJson(c.origin)},
+            {"bounds", boxJson(c.sceneBounds)},
+            {"reach", boxJson(c.sceneReach)},
             {"complete", c.sceneComplete},
             {"materials", materials}};
 }
@@ -73,7 +75,7 @@ Json cameraJson(const Capture& c)
 {
     Json json = cameraJson(c.camera, Angle::radians);
     json["right"] = vectorJson(glm::normalize(glm::cross(c.camera.forward, c.camera.up)));
-    json["clip_from_world"] = rowsOf(clipFromWorld(c.camera, c.width, c.height, c.sceneBounds));
+    json["clip_from_world"] = rowsOf(clipFromWorld(c.camera, c.width, c.height, c.sceneReach.empty() ? c.sceneBounds : c.sceneReach));
     return json;
 }
 
@@ -228,6 +230,7 @@ Json manifestJson(const Capture& c)
             {"version", c.version},
             {"size", {c.width, c.height}},
             {"scene", sceneJson(c)},
+            {"pre_exposure", c.preExposure},
             {"settings", settingsToJson(c.settings)},
             {"requires", needs},
             {"camera", cameraJson(c)},

@@ -101,7 +101,8 @@ void describeRsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
         Buffer& buffer = out.picture(prefix + name, n, n, components, text, tolerance, as.dtype);
         buffer.dds = DdsPlace{prefix + name + ".dds", 0, as.dds, false};
     };
-    map("radiance", {"r", "g", "b", "coverage"}, {"reflected radiance albedo L <n.l> / pi; coverage 1 where a surface was drawn", "light's map", kRadianceUnit},
+    map("radiance", {"r", "g", "b", "coverage"},
+        {"reflected radiance albedo L <n.l> / pi, times pre_exposure; coverage 1 where a surface was drawn", "light's map", kRadianceUnit},
         tolerances::mapRadiance(n), format);
     map("normal", {"x", "y", "z", "n_dot_l"}, {"shading normal towards the light, and its cosine to it", kWorldSpace, ""}, tolerances::mapNormal(n), format);
     map("depth", {}, {"linear depth in [0, 1] over the projection's range; 1 where empty", "light's map", ""}, tolerances::mapDepth(n), {});
@@ -131,7 +132,8 @@ void describeLrsm(Catalogue& out, const DescribedFrame& frame, std::size_t light
         }
     };
     const auto half = [&](int) { return tolerances::layerHalf(gpu); };
-    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha", "light's map", kRadianceUnit}, half, gpu ? kHalf4 : kFloat4);
+    texture("radiance", {"r", "g", "b", ""}, {"radiance times the layer's coverage alpha and pre_exposure", "light's map", kRadianceUnit}, half,
+            gpu ? kHalf4 : kFloat4);
     texture("normal", {"x", "y", "z", "alpha"}, {"normal times alpha, and alpha", kWorldSpace, ""}, half, gpu ? kHalf4 : kFloat4);
     texture(
         "depth", {"z", "z2", "alpha", ""}, {"alpha z, alpha z^2 (z warped to [0, 1] in the layer's range), and alpha", "layer's depth", ""},
@@ -151,6 +153,7 @@ Rsm rsmFromCapture(const Capture& capture, std::size_t light)
 {
     Rsm rsm;
     rsm.projection = lightOf(capture, light).projection;
+    rsm.preExposure = capture.preExposure;
     const int n = rsm.projection.resolution;
     const std::string prefix = rsmPrefix(light);
     rsm.texels = Image<RsmTexel>(n, n);
@@ -195,6 +198,7 @@ Lrsm lrsmFromCapture(const Capture& capture, std::size_t light)
     const CapturedLight& from = lightOf(capture, light);
     Lrsm lrsm;
     lrsm.projection = from.projection;
+    lrsm.preExposure = capture.preExposure;
     lrsm.baseResolution = from.projection.resolution / 2;
     lrsm.ranges = from.storedRanges();
     lrsm.validTexelsPerLayer = from.validTexels;

@@ -7,6 +7,7 @@
 #include "apps/capture/tolerances.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "core/scene/exposure.h"
 #include "core/scene/scene_hash.h"
 
 #include <algorithm>
@@ -62,6 +63,9 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     capture.sceneName = scene.name;
     capture.sceneHash = hashScene(scene);
     capture.sceneBounds = scene.bounds;
+    capture.sceneReach = scene.reach;
+    capture.origin = scene.origin;
+    capture.preExposure = preExposureOf(scene);
     capture.sceneComplete = withoutTextures(scene);
     capture.settings = settings;
     capture.needs = needs;
@@ -84,6 +88,7 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
         if (const PassRow* row = findPassRow(pass); row && row->record) row->record(output, lightOfPass(pass), capture);
     };
     const Frame frame = renderFrame(scene, camera, settings, render);
+    if (options.finished) options.finished(frame);
     for (const PassRow& row : passRows())
         if (row.recordFrame) row.recordFrame(frame, capture);
     finish(capture.buffers);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/capture/capture.h"
+#include "conetrace/render.h"
 
 #include <functional>
 
@@ -11,6 +12,7 @@ struct RecordOptions {
     std::vector<std::string> only;  ///< passes whose buffers are kept; empty: all. "rsm" and "lrsm" mean every light's. Scene and tables stay.
     bool dds = true;                ///< the texture-shaped buffers are to be DDS files too
     std::function<void(const std::string& pass, double fraction)> progress;  ///< may be empty
+    std::function<void(const Frame&)> finished;                              ///< shown the frame before the capture is made of it; may be empty
 };
 
 /// The buffers that recordCapture will keep, without bytes, for predictCaptureBytes. `layersStored` has one entry a light. InputError for an

@@ -121,7 +121,7 @@ void rerunVoxelMips(const Capture& inputs, std::size_t, Rerun& made)
 void makeRsm(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs)
 {
     const Scene scene = wholeScene(inputs);
-    toBuffers(renderRsm(scene, scene.lights.at(light), inputs.needs, settings.rsm), light, outputs);
+    toBuffers(renderRsm(scene, scene.lights.at(light), inputs.needs, settings.rsm, settings.surface.textureFilter), light, outputs);
 }
 
 void makeLrsmBase(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs)

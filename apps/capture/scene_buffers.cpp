@@ -119,6 +119,8 @@ Scene sceneFromCapture(const Capture& capture)
     Scene scene;
     scene.name = capture.sceneName;
     scene.bounds = capture.sceneBounds;
+    scene.reach = capture.sceneReach;
+    scene.origin = capture.origin;
     scene.materials = capture.materials;
     scene.cameras = {capture.camera};
     for (const CapturedLight& light : capture.lights) scene.lights.push_back(light.light);

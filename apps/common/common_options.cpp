@@ -21,6 +21,32 @@ bool parsePair(const std::string& text, char separator, IVec2& pair)
     return first.ec == std::errc() && first.ptr == middle && second.ec == std::errc() && second.ptr == end;
 }
 
+/// Six numbers between commas; nothing else in the text.
+bool parseBox(const std::string& text, glm::dvec3& min, glm::dvec3& max)
+{
+    const char *at = text.data(), *end = at + text.size();
+    for (int i = 0; i < 6; ++i) {
+        double& value = i < 3 ? min[i] : max[i - 3];
+        const auto parsed = std::from_chars(at, end, value);
+        if (parsed.ec != std::errc() || !std::isfinite(value)) return false;
+        at = parsed.ptr;
+        if (i < 5 && (at == end || *at++ != ',')) return false;
+    }
+    return at == end;
+}
+
+/// Lays --bounds over what was measured.
+void forceReach(Scene& scene, const std::string& bounds)
+{
+    if (bounds == "auto") return;
+    scene.reach = scene.bounds;
+    if (bounds == "scene") return;
+    glm::dvec3 min, max;
+    if (!parseBox(bounds, min, max) || !glm::all(glm::lessThan(min, max)))
+        throw InputError("--bounds " + bounds, "must be auto, scene, or six numbers x,y,z,x,y,z: the least corner, then the greatest");
+    scene.reach = {Vec3(min - scene.origin), Vec3(max - scene.origin)};
+}
+
 constexpr const char* kSceneHelp = "a .gltf, .glb or view .json file, or a built-in scene (lrsm info --list)";
 
 void addViewOptions(CLI::App& parser, CommonOptions& options)
@@ -29,6 +55,11 @@ void addViewOptions(CLI::App& parser, CommonOptions& options)
     parser.add_option("--camera", options.camera, "camera by name or index");
     parser.add_option("--time", options.time, "seconds into the animation");
     parser.add_option("--animation", options.animation, "index of the animation; -1: none");
+    parser
+        .add_option(
+            "--bounds", options.bounds,
+            "what voxel grid and light maps cover: auto (what camera and lights reach, where that is far less than the scene), scene, or x,y,z,x,y,z in metres")
+        ->capture_default_str();
 }
 
 }  // namespace
@@ -67,7 +98,10 @@ void addRunOptions(CLI::App& parser, CommonOptions& options)
 Scene loadChosenScene(const CommonOptions& options)
 {
     if (!std::isfinite(options.time)) throw InputError("--time", "must be a finite number of seconds");
-    return loadScene(options.scene, {.time = options.time, .animation = options.animation, .view = options.view});
+    Scene scene = loadScene(
+        options.scene, {.time = options.time, .animation = options.animation, .view = options.view, .camera = options.camera.empty() ? "0" : options.camera});
+    forceReach(scene, options.bounds);
+    return scene;
 }
 
 const Camera& chosenCamera(const Scene& scene, const CommonOptions& options)

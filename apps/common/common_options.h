@@ -18,6 +18,7 @@ struct CommonOptions {
     std::string camera;  ///< name or index
     float time = 0.0f;
     int animation = 0;
+    std::string bounds = "auto";  ///< what Scene::reach is to be
     // addSettingOptions
     std::string preset = "balanced";
     std::string settingsFile;

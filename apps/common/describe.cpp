@@ -34,22 +34,33 @@ std::string brief(const Vec3& v)
     return "(" + brief(v.x) + ", " + brief(v.y) + ", " + brief(v.z) + ")";
 }
 
-std::string describe(const Light& light)
+std::string brief(const glm::dvec3& origin, const Vec3& place)
+{
+    if (origin == glm::dvec3(0.0)) return brief(place);
+    // Every digit that the place has: four would hide it.
+    const glm::dvec3 world = origin + glm::dvec3(place);
+    char text[96];
+    std::snprintf(text, sizeof text, "(%.10g, %.10g, %.10g)", world.x, world.y, world.z);
+    return text;
+}
+
+std::string describe(const Light& light, const glm::dvec3& origin)
 {
     std::string text = typeName(light.type);
     if (light.type == LightType::directional)
         text += ", direction " + brief(light.direction) + ", irradiance " + brief(light.intensity) + " W/m^2";
     else
-        text += " at " + brief(light.position) + ", direction " + brief(light.direction) + ", intensity " + brief(light.intensity) + " W/sr";
+        text += " at " + brief(origin, light.position) + ", direction " + brief(light.direction) + ", intensity " + brief(light.intensity) + " W/sr";
     if (light.type == LightType::spot)
         text += ", cone " + brief(light.innerConeAngle * kDegrees) + " .. " + brief(light.outerConeAngle * kDegrees) + " degrees";
     if (light.type == LightType::cubeFace) text += " (one of six that make a point light)";
     return text;
 }
 
-std::string describe(const Camera& camera)
+std::string describe(const Camera& camera, const glm::dvec3& origin)
 {
-    return std::string(camera.perspective ? "perspective" : "orthographic") + " at " + brief(camera.position) + ", looking along " + brief(camera.forward) +
+    return std::string(camera.perspective ? "perspective" : "orthographic") + " at " + brief(origin, camera.position) + ", looking along " +
+           brief(camera.forward) +
            (camera.perspective ? ", vertical field of view " + brief(camera.verticalFov * kDegrees) + " degrees"
                                : ", " + brief(camera.verticalExtent) + " m high");
 }
@@ -83,10 +94,31 @@ Json countersJson(const Counters& counters)
     return json;
 }
 
-Json cameraJson(const Camera& camera, Angle angle)
+Json vectorJson(const glm::dvec3& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+namespace {
+
+/// In float's digits where the origin adds none.
+Json placeJson(const Vec3& place, const glm::dvec3& origin)
+{
+    return origin == glm::dvec3(0.0) ? vectorJson(place) : vectorJson(origin + glm::dvec3(place));
+}
+
+}  // namespace
+
+Json boxJson(const Aabb& box, const glm::dvec3& origin)
+{
+    if (box.empty()) return nullptr;
+    return {{"min", placeJson(box.min, origin)}, {"max", placeJson(box.max, origin)}};
+}
+
+Json cameraJson(const Camera& camera, Angle angle, const glm::dvec3& origin)
 {
     Json json = {{"name", camera.name},
-                 {"position", vectorJson(camera.position)},
+                 {"position", placeJson(camera.position, origin)},
                  {"forward", vectorJson(camera.forward)},
                  {"up", vectorJson(camera.up)},
                  {"perspective", camera.perspective}};
@@ -100,10 +132,10 @@ Json cameraJson(const Camera& camera, Angle angle)
     return json;
 }
 
-Json lightJson(const Light& light)
+Json lightJson(const Light& light, const glm::dvec3& origin)
 {
     Json json = {{"name", light.name}, {"type", typeName(light.type)}, {"direction", vectorJson(light.direction)}, {"intensity", vectorJson(light.intensity)}};
-    if (light.type != LightType::directional) json["position"] = vectorJson(light.position);
+    if (light.type != LightType::directional) json["position"] = placeJson(light.position, origin);
     if (light.type == LightType::spot) {
         json["inner_cone_angle_degrees"] = light.innerConeAngle * kDegrees;
         json["outer_cone_angle_degrees"] = light.outerConeAngle * kDegrees;
@@ -121,12 +153,14 @@ Json sceneJson(const Scene& scene, const std::string& sha256)
                  {"materials", scene.materials.size()},
                  {"textures", scene.textures.size()},
                  {"textures_decoded", countDecoded(scene)},
-                 {"bounds", {{"min", vectorJson(scene.bounds.min)}, {"max", vectorJson(scene.bounds.max)}}},
+                 {"origin", vectorJson(scene.origin)},
+                 {"bounds", boxJson(scene.bounds, scene.origin)},
+                 {"reach", boxJson(reachIsPart(scene) ? scene.reach : scene.bounds, scene.origin)},
                  {"lights", Json::array()},
                  {"cameras", Json::array()},
                  {"notes", scene.notes}};
-    for (const Light& light : scene.lights) json["lights"].push_back(lightJson(light));
-    for (const Camera& camera : scene.cameras) json["cameras"].push_back(cameraJson(camera));
+    for (const Light& light : scene.lights) json["lights"].push_back(lightJson(light, scene.origin));
+    for (const Camera& camera : scene.cameras) json["cameras"].push_back(cameraJson(camera, Angle::degrees, scene.origin));
     return json;
 }
 
@@ -136,15 +170,30 @@ Json requirementsJson(const Requirements& needs)
             {"textures", needs.textures}, {"vertex_colors", needs.vertexColors}, {"left_out", needs.leftOut}};
 }
 
+Image<Vec3> worldPositions(const Scene& scene, const Image<Vec3>& position, const Image<float>& depth)
+{
+    Image<Vec3> world = position;
+    if (scene.origin == glm::dvec3(0.0)) return world;
+    for (std::size_t i = 0; i < world.texels.size(); ++i)
+        if (depth.texels[i] != 0.0f) world.texels[i] = Vec3(worldPlace(scene, world.texels[i]));
+    return world;
+}
+
 void printScene(std::ostream& out, const Scene& scene)
 {
     out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.triangleCount() << " triangles, " << scene.materials.size() << " materials, "
         << scene.textures.size() << " textures (" << countDecoded(scene) << " used)\n"
-        << "bounds: " << brief(scene.bounds.min) << " .. " << brief(scene.bounds.max) << " m\n";
+        << "bounds: " << brief(scene.origin, scene.bounds.min) << " .. " << brief(scene.origin, scene.bounds.max) << " m\n";
+    if (reachIsPart(scene))
+        out << "reach: " << brief(scene.origin, scene.reach.min) << " .. " << brief(scene.origin, scene.reach.max)
+            << " m: what camera and lights reach; voxel grid and light maps cover no more\n";
+    if (scene.origin != glm::dvec3(0.0)) out << "origin: " << brief(scene.origin, Vec3(0.0f)) << " m: passes compute relative to it\n";
     out << "lights: " << scene.lights.size() << ", one LRSM each\n";
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) out << "  " << i << " \"" << scene.lights[i].name << "\": " << describe(scene.lights[i]) << "\n";
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        out << "  " << i << " \"" << scene.lights[i].name << "\": " << describe(scene.lights[i], scene.origin) << "\n";
     out << "cameras: " << scene.cameras.size() << "\n";
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i) out << "  " << i << " \"" << scene.cameras[i].name << "\": " << describe(scene.cameras[i]) << "\n";
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+        out << "  " << i << " \"" << scene.cameras[i].name << "\": " << describe(scene.cameras[i], scene.origin) << "\n";
     if (!scene.notes.empty()) out << "notes:\n";
     for (const std::string& note : scene.notes) out << "  " << note << "\n";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/base/counters.h"
+#include "core/base/image.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
 
@@ -16,13 +17,20 @@ std::string jsonText(const nlohmann::ordered_json& json);
 nlohmann::ordered_json vectorJson(const Vec3& v);
 /// Whole numbers without a point; null where a value is not finite.
 nlohmann::ordered_json countersJson(const Counters& counters);
+nlohmann::ordered_json vectorJson(const glm::dvec3& v);
+/// null where there is none.
+nlohmann::ordered_json boxJson(const Aabb& box, const glm::dvec3& origin = glm::dvec3(0.0));
 /// The field of view in degrees is for people (vertical_fov_degrees); in radians it is the camera's to the last bit (vertical_fov).
 enum class Angle { degrees, radians };
-nlohmann::ordered_json cameraJson(const Camera& camera, Angle angle = Angle::degrees);
-nlohmann::ordered_json lightJson(const Light& light);
-/// Name, hash, counts, bounds, notes; the hash is `sha256` of the scene as loaded.
+/// Places in the file's world: `origin` is added (Scene::origin).
+nlohmann::ordered_json cameraJson(const Camera& camera, Angle angle = Angle::degrees, const glm::dvec3& origin = glm::dvec3(0.0));
+nlohmann::ordered_json lightJson(const Light& light, const glm::dvec3& origin = glm::dvec3(0.0));
+/// Name, hash, counts, bounds, reach, notes; the hash is `sha256` of the scene as loaded.
 nlohmann::ordered_json sceneJson(const Scene& scene, const std::string& sha256);
 nlohmann::ordered_json requirementsJson(const Requirements& needs);
+
+/// A picture's positions in the file's world; 0 where its depth is.
+Image<Vec3> worldPositions(const Scene& scene, const Image<Vec3>& position, const Image<float>& depth);
 
 void printScene(std::ostream& out, const Scene& scene);
 void printRequirements(std::ostream& out, const Requirements& needs);

@@ -3,6 +3,7 @@
 #include "apps/common/describe.h"
 #include "core/base/parallel.h"
 #include "core/imageio/image_io.h"
+#include "core/scene/exposure.h"
 #include "core/settings/settings_table.h"
 
 #include <cmath>
@@ -36,7 +37,7 @@ float exposureOf(const Frame& frame, const FrameRecord& record)
     return record.exposureStops ? *record.exposureStops : automaticExposure(frame.combined);
 }
 
-LayeredImage layersOf(const Frame& frame, const Json& json)
+LayeredImage layersOf(const Frame& frame, const Scene& scene, const Json& json)
 {
     LayeredImage image;
     addLayer(image, "", frame.combined);  // what a viewer shows by default
@@ -47,7 +48,7 @@ LayeredImage layersOf(const Frame& frame, const Json& json)
     addLayer(image, "combined", frame.combined);
     addLayer(image, "albedo", frame.gbuffer.albedo);
     addLayer(image, "normal", frame.gbuffer.normal);
-    addLayer(image, "position", frame.gbuffer.position);
+    addLayer(image, "position", worldPositions(scene, frame.gbuffer.position, frame.gbuffer.depthLinear));
     addLayer(image, "depth", frame.gbuffer.depthLinear, "Z");
     addLayer(image, "opacity", frame.opacity);
     image.metadata = {{"lrsm:version", json["version"].get<std::string>()},
@@ -78,12 +79,13 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
             {"command", "render"},
             {"size", {frame.combined.width, frame.combined.height}},
             {"exposure_stops", exposureOf(frame, record)},
+            {"pre_exposure", preExposureOf(record.scene)},
             {"preset", record.preset},
             {"settings", settingsToJson(record.settings)},
             {"visibility", record.visibility},
             {"radiance", record.radiance},
             {"scene", sceneJson(record.scene, record.sceneHash)},
-            {"camera", cameraJson(record.camera)},
+            {"camera", cameraJson(record.camera, Angle::degrees, record.scene.origin)},
             {"requires", requirementsJson(frame.needs)},
             {"milliseconds", milliseconds},
             {"passes", passesJson(frame)},
@@ -99,7 +101,7 @@ void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& rec
     };
     const auto png = [](const char* name, auto picture) { return File{name, [=] { return encodePng(picture()); }}; };
     const File files[] = {
-        {"image.exr", [&] { return encodeExr(layersOf(frame, json)); }},
+        {"image.exr", [&] { return encodeExr(layersOf(frame, record.scene, json)); }},
         png("image.png", [&] { return tonemap(frame.combined, stops); }),
         png("direct.png", [&] { return tonemap(frame.direct, stops); }),
         png("irradiance.png", [&] { return tonemap(onWhite(frame.irradiance), stops); }),

@@ -8,7 +8,7 @@
 #include "core/scene/check_scene.h"
 #include "core/settings/settings_table.h"
 #include "lrsm/rsm.h"
-#include "voxel/bit_grid.h"
+#include "voxel/voxelize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,7 +147,7 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
     const FloatState state;
     checkScene(scene);
     validate(settings);
-    const VoxelGrid grid = fitVoxelGrid(scene.bounds, settings.voxel.resolution);
+    const VoxelGrid grid = gridOf(scene, settings.voxel);
     const double voxelSize = double(grid.voxelSize);
     SceneAnalysis out;
     out.needs = needs;

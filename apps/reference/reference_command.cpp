@@ -2,6 +2,7 @@
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/common/interrupts.h"
+#include "apps/common/messages.h"
 #include "apps/common/progress.h"
 #include "apps/reference/reference_files.h"
 #include "apps/reference/reference_run.h"
@@ -88,6 +89,17 @@ std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, cons
     return found;
 }
 
+void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, std::uint64_t invalidSamples)
+{
+    if (invalidSamples > 0) say({std::to_string(invalidSamples) + " values were not finite and count as 0"});
+    Image<Vec3> position(seen.depth.width, seen.depth.height), normal = position;
+    for (std::size_t i = 0; i < position.texels.size(); ++i) {
+        position.texels[i] = seen.surface.texels[i].position;
+        normal.texels[i] = seen.surface.texels[i].geometricNormal;
+    }
+    say(darknessMessages(scene, {position, normal, seen.depth}, seen.direct, picture.combined));
+}
+
 int runReference(const ReferenceArguments& options)
 {
     if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
@@ -106,6 +118,7 @@ int runReference(const ReferenceArguments& options)
     Checkpoint checkpoint{identifyReference(settings, camera, sceneHash), sampleUnit(scene), {}};
     std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
+    say(loadMessages(scene));
     Progress progress(options.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, settings);
@@ -135,9 +148,10 @@ int runReference(const ReferenceArguments& options)
                              {"ratio", seconds > 0.0 && rate > 0.0 ? double(rays.total()) / seconds / rate : 0.0}};
     }
     OutputFolder folder(options.output);
-    writeReference(folder, checkpoint, seenLayers(tracer.primary()), json, exposure);
+    const ReferenceFrame picture = writeReference(folder, checkpoint, seenLayers(scene, tracer.primary()), json, exposure);
     folder.commit();
 
+    saySeen(scene, tracer.primary(), picture, checkpoint.state.invalidSamples);
     if (options.json)
         std::cout << jsonText(json);
     else if (!options.quiet) {
@@ -146,7 +160,6 @@ int runReference(const ReferenceArguments& options)
         if (options.bareLoop)
             std::cout << "  bare loop over the same kind of rays: " << json["bare_loop"]["million_per_second"].get<double>() << " million a second; ratio "
                       << json["bare_loop"]["ratio"].get<double>() << "\n";
-        if (checkpoint.state.invalidSamples > 0) std::cout << "  " << checkpoint.state.invalidSamples << " values were not finite and count as 0\n";
         std::cout << folder.path().string() << ": image.exr, PNGs, frame.json, samples.bin\n";
     }
     return 0;

@@ -50,7 +50,7 @@ bool anyLight(const Image<Vec3>& picture)
 
 }  // namespace
 
-SeenLayers seenLayers(const PrimaryHits& primary)
+SeenLayers seenLayers(const Scene& scene, const PrimaryHits& primary)
 {
     const int width = primary.covered.width, height = primary.covered.height;
     SeenLayers seen{primary.direct, {width, height}, {width, height}, {width, height}, primary.depth};
@@ -59,6 +59,7 @@ SeenLayers seenLayers(const PrimaryHits& primary)
         seen.normal.texels[i] = primary.surface.texels[i].normal;
         seen.position.texels[i] = primary.surface.texels[i].position;
     }
+    seen.position = worldPositions(scene, seen.position, seen.depth);
     return seen;
 }
 
@@ -87,7 +88,7 @@ std::string describeRanges(const std::vector<SampleRange>& ranges)
     return joined(ranges, [](const SampleRange& range) { return std::to_string(range.begin) + ":" + std::to_string(range.end); });
 }
 
-void writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const SeenLayers& seen, const Json& json, std::optional<float> exposureStops)
+ReferenceFrame writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const SeenLayers& seen, const Json& json, std::optional<float> exposureStops)
 {
     const ReferenceFrame frame = resolveFrame(checkpoint.state.sums, checkpoint.unit, seen.direct, seen.albedo);
     const float stops = exposureStops ? *exposureStops : automaticExposure(frame.combined);
@@ -102,6 +103,7 @@ void writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const Se
     if (anyLight(frame.indirectSpecular)) folder.write("indirect.specular.png", encodePng(tonemap(frame.indirectSpecular, stops)));
     folder.write("frame.json", jsonText(complete));
     folder.write(kSamplesFile, encodeCheckpoint(checkpoint));
+    return frame;
 }
 
 }  // namespace lrsm

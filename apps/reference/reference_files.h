@@ -17,7 +17,7 @@ struct SeenLayers {
     Image<Vec3> direct, albedo, normal, position;
     Image<float> depth;
 };
-SeenLayers seenLayers(const PrimaryHits& primary);
+SeenLayers seenLayers(const Scene& scene, const PrimaryHits& primary);
 /// From image.exr of another reference. Throws InputError.
 SeenLayers readSeenLayers(const std::string& exrPath);
 
@@ -26,8 +26,8 @@ SampleRange parseSamples(const std::string& text);
 /// "0:64, 128:256"
 std::string describeRanges(const std::vector<SampleRange>& ranges);
 
-/// Sums to files; the EXR holds no time and no path, so equal samples give equal bytes.
-void writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const SeenLayers& seen, const nlohmann::ordered_json& json,
-                    std::optional<float> exposureStops);
+/// Sums to files, and the picture that is in them; the EXR holds no time and no path, so equal samples give equal bytes.
+ReferenceFrame writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const SeenLayers& seen, const nlohmann::ordered_json& json,
+                              std::optional<float> exposureStops);
 
 }  // namespace lrsm

@@ -112,7 +112,7 @@ Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camer
                         {"block", 1 << settings.blockBits},
                         {"specular_aperture_degrees", settings.specularApertureDegrees}};
     json["scene"] = sceneJson(scene, sceneHash);
-    json["camera"] = cameraJson(camera);
+    json["camera"] = cameraJson(camera, Angle::degrees, scene.origin);
     json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
     json["rays"] = speedJson(state.rays, state.seconds);
     json["not_finite_samples"] = state.invalidSamples;

@@ -78,7 +78,7 @@ ReferenceSettings truthSettings(const SceneCase& sceneCase, std::uint64_t sample
 Truth toTruth(const SceneCase& sceneCase, const Checkpoint& checkpoint, const PathTracer& tracer)
 {
     const std::string sha256 = Sha256().add(textOf(checkpoint.identity) + describeRanges(checkpoint.state.sums.ranges)).hex();
-    const SeenLayers seen = seenLayers(tracer.primary());
+    const SeenLayers seen = seenLayers(sceneCase.scene, tracer.primary());
     return truthOf(resolveFrame(checkpoint.state.sums, checkpoint.unit, seen.direct, seen.albedo), tracer.primary().covered, sha256, sceneCase.name);
 }
 
@@ -112,8 +112,8 @@ std::optional<Truth> findOrMakeTruth(const SceneCase& sceneCase, std::uint64_t s
     checkpoint.state = std::move(state);
     if (!references.empty()) {
         OutputFolder folder(own.string());
-        writeReference(folder, checkpoint, seenLayers(tracer.primary()), referenceJson(sceneCase.scene, sceneHash, sceneCase.camera, tracer, checkpoint.state),
-                       {});
+        writeReference(folder, checkpoint, seenLayers(sceneCase.scene, tracer.primary()),
+                       referenceJson(sceneCase.scene, sceneHash, sceneCase.camera, tracer, checkpoint.state), {});
         folder.commit();
     }
     return toTruth(sceneCase, checkpoint, tracer);

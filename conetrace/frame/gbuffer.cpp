@@ -65,14 +65,14 @@ std::size_t GBuffer::predictBytes(int width, int height, bool specular)
     return std::size_t(width) * std::size_t(height) * (kAlways + (specular ? sizeof(Vec3) + sizeof(float) : 0));
 }
 
-Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& sceneBounds)
+Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& bounds)
 {
     // The same half height as pixelRay's; the picture's own proportions decide its width.
     const Vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
     const double half = camera.perspective ? tangent(0.5 * double(camera.verticalFov)) : 0.5 * double(camera.verticalExtent);
     // An orthographic near plane may be at 0; a perspective one scales with its scene.
     const double least = camera.perspective ? 0.0 : 1e-6;
-    const double near = camera.nearPlane, far = std::max(farthestDepth(camera, sceneBounds) * 1.001, near + 1e-3 * std::abs(near) + least);
+    const double near = camera.nearPlane, far = std::max(farthestDepth(camera, bounds) * 1.001, near + 1e-3 * std::abs(near) + least);
 
     Mat4 m(0.0f);
     setRow(m, 0, right, camera.position, double(height) / (half * width), 0.0);
@@ -103,7 +103,7 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requiremen
     checkDepthRatio(camera, scene.bounds);
     checkMaterials(scene);
     const int width = settings.width, height = settings.height;
-    const SceneFragments drawn = drawScene(scene, clipFromWorld(camera, width, height, scene.bounds), needs, width, height);
+    const SceneFragments drawn = drawScene(scene, clipFromWorld(camera, width, height, scene.reach.empty() ? scene.bounds : scene.reach), needs, width, height);
 
     GBuffer out;
     out.width = width;

@@ -52,8 +52,8 @@ struct GBufferSettings {
     bool operator==(const GBufferSettings&) const = default;
 };
 
-/// World-to-clip of a camera for a picture of this size; z/w in [0, 1], near at 0.
-Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& sceneBounds);
+/// World-to-clip of a camera for a picture of this size; near at z/w = 0, the farthest point of `bounds` (what is beyond is not cut) at 1.
+Mat4 clipFromWorld(const Camera& camera, int width, int height, const Aabb& bounds);
 
 /// Unit direction from a point to the eye; against the viewing axis for an orthographic camera.
 Vec3 directionToEye(const Camera& camera, const Vec3& pWorld);

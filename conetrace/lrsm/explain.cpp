@@ -99,8 +99,13 @@ std::string explainLrsm(const GatherInput& input, int x, int y)
     const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
-    return settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
-                                                       : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
+    std::string text = settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
+                                                                   : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
+    const glm::dvec3& origin = input.scene.origin;
+    if (origin != glm::dvec3(0.0)) text += format("positions count from %.10g %.10g %.10g, the scene's origin\n", origin.x, origin.y, origin.z);
+    if (!lrsms.empty() && lrsms[0].preExposure != 1.0f)
+        text += format("R of layers, and what they give (->), are times %g, the light maps' pre-exposure\n", double(lrsms[0].preExposure));
+    return text;
 }
 
 }  // namespace lrsm

@@ -201,7 +201,10 @@ class TileBatch {
         }
     }
 
-    Vec3 radianceOf(int cone) const { return {result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]}; }
+    Vec3 radianceOf(int cone) const
+    {
+        return unexposed(world_.cones) * Vec3(result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]);
+    }
 
     const GBuffer& gbuffer_;
     const BatchWorld& world_;

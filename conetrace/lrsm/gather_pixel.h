@@ -18,10 +18,13 @@ template <Estimator estimator, class Sampler, class Recorder>
 ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch& scratch,
                      ConeCounts& counts, Recorder& recorder)
 {
+    ConeResult cone;
     if constexpr (estimator == Estimator::slab)
-        return marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
+        cone = marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
     else
-        return marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
+        cone = marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
+    cone.radiance *= unexposed(world);
+    return cone;
 }
 
 inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)

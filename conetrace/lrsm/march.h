@@ -22,6 +22,12 @@ struct ConeWorld {
     const NormalCdf& phi;
 };
 
+/// What turns gathered radiance into the scene's units. All maps have the scene's one pre-exposure, a power of two: exponents alone change.
+inline float unexposed(const ConeWorld& world)
+{
+    return world.lrsms.empty() ? 1.0f : 1.0f / world.lrsms.front().preExposure;
+}
+
 /// The lookup for any pyramid and setting; the specialised OpacitySampler gives the same bits faster.
 struct GenericSampler {
     const OpacityPyramid& pyramid;

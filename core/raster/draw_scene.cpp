@@ -17,6 +17,31 @@ struct Submission {
     std::vector<std::uint32_t> firstVertex, firstTriangle;
 };
 
+/// Distance of a perspective projection's near plane along its axis; 0 for an orthographic one.
+double nearPlaneOf(const Mat4& m)
+{
+    const glm::dvec3 z(m[0][2], m[1][2], m[2][2]), w(m[0][3], m[1][3], m[2][3]);
+    const double z2 = glm::dot(z, z), w2 = glm::dot(w, w);
+    return w2 > 0.0 && z2 > 0.0 ? double(m[3][3]) - double(m[3][2]) * std::sqrt(w2 / z2) : 0.0;
+}
+
+/// Vertices for which one rounding of w moves the near plane's cut by more than a thousandth.
+std::vector<FarVertex> farVertices(const Scene& scene, const Mat4& clipFromWorld, const Submission& all)
+{
+    constexpr double kNearPlanes = 0x1p14;
+    std::vector<FarVertex> far;
+    const double limit = kNearPlanes * nearPlaneOf(clipFromWorld);
+    if (!(limit > 0.0)) return far;
+    const glm::dmat4 exact(clipFromWorld);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        for (std::size_t i = 0; i < scene.meshes[m].positions.size(); ++i) {
+            const auto vertex = std::uint32_t(all.firstVertex[m] + i);
+            if (std::abs(double(all.clipPositions[vertex].w)) > limit)
+                far.push_back({vertex, exact * glm::dvec4(glm::dvec3(scene.meshes[m].positions[i]), 1.0)});
+        }
+    return far;
+}
+
 Submission layOut(const Scene& scene, bool alphaTest)
 {
     Submission all;
@@ -57,7 +82,8 @@ SceneFragments drawScene(const Scene& scene, const Mat4& clipFromWorld, const Re
         if (!all.tested.empty()) std::fill_n(all.tested.begin() + t0, mesh.triangles.size(), std::uint8_t(material.alphaMask));
     }
 
-    RasterOutput drawn = rasterize({all.clipPositions, all.triangles, all.cull}, width, height, all.tested,
+    const std::vector<FarVertex> far = farVertices(scene, clipFromWorld, all);
+    RasterOutput drawn = rasterize({.clipPositions = all.clipPositions, .triangles = all.triangles, .cull = all.cull, .far = far}, width, height, all.tested,
                                    [&](const Fragment& fragment) { return passesAlphaTest(scene, hitOf(all.firstTriangle, fragment)); });
     return {std::move(drawn.fragments), drawn.counts, std::move(all.firstTriangle)};
 }

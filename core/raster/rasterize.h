@@ -33,10 +33,17 @@ struct Fragment {
 
 enum class Cull { none, back };  ///< back: clockwise on screen (y down) is dropped, i.e. counter-clockwise in y-up is the front
 
+/// A vertex so far behind the near plane that float32 cannot say how much z and w differ: clipping at that plane goes by this position.
+struct FarVertex {
+    std::uint32_t vertex = 0;
+    glm::dvec4 clipPosition{0.0};
+};
+
 struct RasterInput {
     std::span<const Vec4> clipPositions;                      ///< one a vertex
     std::span<const std::array<std::uint32_t, 3>> triangles;  ///< into clipPositions
     std::span<const Cull> cull;                               ///< one a triangle; empty: Cull::none for all
+    std::span<const FarVertex> far = {};                      ///< ascending; may be empty
 };
 
 struct RasterCounts {

@@ -53,13 +53,20 @@ Fate addPiece(Chunk& chunk, const Viewport& viewport, std::uint32_t triangle, Cu
     return Fate::drawn;
 }
 
+/// Decided by the vertex alone, so that triangles that share an edge cut it alike.
+glm::dvec4 positionForClipping(const RasterInput& input, std::uint32_t vertex)
+{
+    const auto found = std::lower_bound(input.far.begin(), input.far.end(), vertex, [](const FarVertex& f, std::uint32_t v) { return f.vertex < v; });
+    return found != input.far.end() && found->vertex == vertex ? found->clipPosition : glm::dvec4(input.clipPositions[vertex]);
+}
+
 Fate addClipped(Chunk& chunk, const Viewport& viewport, const RasterInput& input, std::uint32_t triangle, Cull cull)
 {
     const ClipVolume volume(viewport.width, viewport.height);
     ClipPolygon polygon;
     polygon.count = 3;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec4& p = input.clipPositions[input.triangles[triangle][k]];
+        const glm::dvec4 p = positionForClipping(input, input.triangles[triangle][k]);
         polygon.vertices[k] = {
             .x = p.x, .y = p.y, .z = p.z, .w = p.w, .b1 = k == 1 ? 1.0 : 0.0, .b2 = k == 2 ? 1.0 : 0.0, .outside = outsideBits(volume, p.x, p.y, p.z, p.w)};
     }

@@ -111,7 +111,7 @@ void sampleChannel(const Channel& channel, float time, std::span<double> value)
     if (rotation) normalize(value);
 }
 
-Pose poseNodes(const Asset& asset, int animation, float time)
+Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin)
 {
     Pose pose;
     std::vector<LocalTransform> locals;
@@ -126,7 +126,8 @@ Pose poseNodes(const Asset& asset, int animation, float time)
     pose.worldFromNode.assign(asset.nodes.size(), DMat4(1.0));
     for (const int i : asset.parentsFirst) {
         const Node& node = asset.nodes[std::size_t(i)];
-        const DMat4 local = node.hasMatrix ? node.matrix : compose(locals[std::size_t(i)]);
+        DMat4 local = node.hasMatrix ? node.matrix : compose(locals[std::size_t(i)]);
+        if (node.parent < 0) local[3] -= glm::dvec4(origin, 0.0);
         pose.worldFromNode[std::size_t(i)] = node.parent < 0 ? local : pose.worldFromNode[std::size_t(node.parent)] * local;
     }
     return pose;

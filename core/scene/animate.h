@@ -12,8 +12,9 @@ struct Pose {
     std::vector<std::vector<float>> weights;  ///< morph weights, one list a node; empty where the node has no targets
 };
 
-/// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds.
-Pose poseNodes(const Asset& asset, int animation, float time);
+/// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds. `origin`, in metres, is subtracted from the roots' places, so that
+/// everything below comes out relative to it before anything is rounded to float.
+Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin = DVec3(0.0));
 
 /// A channel's value at `time`, clamped to its first and last keyframe: channel.width numbers into `value`. STEP holds, LINEAR
 /// interpolates (rotations along the shorter great arc), CUBICSPLINE is Hermite's; a rotation comes out with unit length.

@@ -4,11 +4,14 @@
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
 #include "core/scene/gltf_document.h"
+#include "core/scene/invisible.h"
 #include "core/scene/mip_chain.h"
 #include "core/scene/pose_asset.h"
+#include "core/scene/reach.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -119,9 +122,8 @@ void checkSize(const Asset& asset)
     }
 }
 
-void checkNotEmpty(const Scene& scene, const std::string& file)
+void checkHasArea(const Scene& scene, const std::string& file)
 {
-    if (scene.triangleCount() == 0) throw InputError(file, "the scene has no triangles");
     const glm::dvec3 extent = glm::dvec3(scene.bounds.max) - glm::dvec3(scene.bounds.min);
     if (std::max({extent.x, extent.y, extent.z}) > kMaxExtent) throw InputError(file, "the scene is larger than 1e15 m");
     for (const lrsm::Mesh& mesh : scene.meshes) {
@@ -134,6 +136,72 @@ void checkNotEmpty(const Scene& scene, const std::string& file)
     throw InputError(file, "no triangle of the scene has an area");
 }
 
+/// Posed, with lights and a camera, places relative to `origin`.
+Scene posed(const Asset& asset, const LoadOptions& options, const DVec3& origin)
+{
+    const int animation = asset.animations.empty() ? -1 : options.animation;
+    Scene scene = poseAsset(asset, poseNodes(asset, animation, options.time, origin));
+    if (scene.triangleCount() == 0) throw InputError(asset.file, "the scene has no triangles");
+    scene.origin = origin;
+    if (scene.lights.empty()) addDefaultLight(scene);
+    if (scene.cameras.empty()) addDefaultCamera(scene);
+    return scene;
+}
+
+/// The camera that will look, else the first: an unknown one is refused where it is chosen.
+const Camera& eyeOf(const Scene& scene, const LoadOptions& options)
+{
+    if (options.eye) return *options.eye;
+    try {
+        return findCamera(scene, options.camera);
+    } catch (const InputError&) {
+        return scene.cameras.front();
+    }
+}
+
+/// The coarsest step of the file's own positions in the world, metres, and how far from its node's origin it occurs.
+struct FloatStep {
+    double step = 0.0, distance = 0.0;
+};
+
+FloatStep coarsestStep(const Asset& asset, const Pose& pose)
+{
+    FloatStep coarsest;
+    for (const int n : asset.sceneNodes) {
+        const Node& node = asset.nodes[std::size_t(n)];
+        if (node.mesh < 0 || node.skin >= 0) continue;
+        const DMat4& world = pose.worldFromNode[std::size_t(n)];
+        const double scale = std::sqrt(std::max({glm::dot(world[0], world[0]), glm::dot(world[1], world[1]), glm::dot(world[2], world[2])}));
+        float largest = 0.0f;
+        for (const Primitive& primitive : asset.meshes[std::size_t(node.mesh)].primitives)
+            for (const Vec3& p : primitive.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        const double step = scale * double(std::nextafter(largest, kInfinity) - largest);
+        if (step > coarsest.step) coarsest = {step, scale * double(largest)};
+    }
+    return coarsest;
+}
+
+/// What moving the origin cannot bring back.
+void noteLostDigits(const Asset& asset, const LoadOptions& options, Scene& scene)
+{
+    constexpr double kWorthSaying = 0x1p-16;  // of the camera's reach
+    const std::optional<double> reach = reachOf(scene, eyeOf(scene, options));
+    const int animation = asset.animations.empty() ? -1 : options.animation;
+    const FloatStep lost = coarsestStep(asset, poseNodes(asset, animation, options.time));
+    if (!reach || lost.step <= kWorthSaying * *reach) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "positions in the file are float32, %.4g m from their node's origin in steps of %.2g m: what was finer is lost there",
+                  lost.distance, lost.step);
+    scene.notes.emplace_back(text);
+}
+
+void noteInvisible(Scene& scene)
+{
+    std::size_t triangles = 0;
+    for (const lrsm::Mesh& mesh : scene.meshes) triangles += isDrawnNowhere(scene, mesh) ? mesh.triangles.size() : 0;
+    if (triangles > 0) scene.notes.push_back(countOf(triangles, "triangle") + " drawn nowhere, and no obstacle to cones: alpha is below its cutoff everywhere");
+}
+
 }  // namespace
 }  // namespace gltf
 
@@ -142,14 +210,17 @@ Scene loadGltf(const std::string& path, const LoadOptions& options)
     const gltf::Asset asset = gltf::readAsset(path);
     gltf::checkOptions(asset, options);
     gltf::checkSize(asset);
-    const int animation = asset.animations.empty() ? -1 : options.animation;
-    Scene scene = gltf::poseAsset(asset, gltf::poseNodes(asset, animation, options.time));
+    Scene scene = gltf::posed(asset, options, glm::dvec3(0.0));
+    const glm::dvec3 origin = chooseOrigin(scene, gltf::eyeOf(scene, options));
+    if (origin != glm::dvec3(0.0)) {
+        scene = gltf::posed(asset, options, origin);
+        gltf::noteLostDigits(asset, options, scene);
+    }
     scene.name = std::filesystem::path(path).filename().string();
-    gltf::checkNotEmpty(scene, path);
+    gltf::checkHasArea(scene, path);
     gltf::decodeTextures(asset, scene);
     buildMipChains(scene);
-    if (scene.lights.empty()) addDefaultLight(scene);
-    if (scene.cameras.empty()) addDefaultCamera(scene);
+    gltf::noteInvisible(scene);
     return scene;
 }
 

@@ -4,7 +4,9 @@
 #include "core/base/float_state.h"
 #include "core/base/text.h"
 #include "core/scene/builtin_scenes.h"
+#include "core/scene/check_scene.h"
 #include "core/scene/defaults.h"
+#include "core/scene/reach.h"
 #include "core/scene/view_file.h"
 
 #include <algorithm>
@@ -28,12 +30,12 @@ std::string lowerCaseExtension(const std::string& path)
 }
 
 /// A built-in or a glTF file; `place` is where its name was given.
-Scene loadPlain(const std::string& scene, const SceneOptions& options, const std::string& place)
+Scene loadPlain(const std::string& scene, const SceneOptions& options, const std::optional<Camera>& eye, const std::string& place)
 {
     if (std::optional<Scene> builtin = makeBuiltinScene(scene)) return std::move(*builtin);
     std::error_code error;
     if (scene.empty() || !std::filesystem::exists(scene, error)) failUnknown(place);
-    return loadGltf(scene, {options.time, options.animation});
+    return loadGltf(scene, {.time = options.time, .animation = options.animation, .camera = options.camera, .eye = eye});
 }
 
 /// Beside the view file; else in the folder above, where views have a folder of their own among the scenes.
@@ -46,6 +48,13 @@ std::string sceneOfView(const std::string& scene, const std::string& viewPath)
     return (!std::filesystem::exists(beside, error) && std::filesystem::exists(above, error) ? above : beside).string();
 }
 
+/// For what the camera reaches, as far as depths over the whole scene can still be told apart.
+float nearPlaneIn(const Scene& scene, const Camera& camera)
+{
+    const Vec3 far = glm::max(glm::abs(scene.bounds.min - camera.position), glm::abs(scene.bounds.max - camera.position));
+    return std::max(nearPlaneFor(camera, measureReach(scene, camera)), float(1.01 / kMaxDepthRatio) * glm::length(far));
+}
+
 Scene loadWithView(const std::string& scene, const std::string& viewPath, const SceneOptions& options)
 {
     View view = readViewFile(viewPath);
@@ -56,12 +65,11 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     }
     if (lowerCaseExtension(target) == ".json") throw InputError(viewPath + ": scene", "must not be a view file itself");
 
-    Scene result = loadPlain(target, options, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
-    if (view.camera) {
-        view.camera->nearPlane = nearPlaneFor(*view.camera, result.bounds);
-        result.cameras = {*view.camera};
-    }
+    Scene result = loadPlain(target, options, view.camera, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
+    if (result.origin != glm::dvec3(0.0)) view = readViewFile(viewPath, result.origin);
+    if (view.camera) result.cameras = {*view.camera};
     if (view.lights) result.lights = std::move(*view.lights);
+    if (view.camera) result.cameras[0].nearPlane = nearPlaneIn(result, result.cameras[0]);
     // What was said about defaults no longer holds where the view replaced them.
     std::erase_if(result.notes,
                   [&](const std::string& note) { return (view.camera && note == kDefaultCameraNote) || (view.lights && note == kDefaultLightNote); });
@@ -69,14 +77,21 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     return result;
 }
 
+Scene loadAny(const std::string& scene, const SceneOptions& options)
+{
+    if (!options.view.empty()) return loadWithView(scene, options.view, options);
+    if (lowerCaseExtension(scene) == ".json") return loadWithView("", scene, options);
+    return loadPlain(scene, options, {}, "scene \"" + scene + "\"");
+}
+
 }  // namespace
 
 Scene loadScene(const std::string& scene, const SceneOptions& options)
 {
     const FloatState state;
-    if (!options.view.empty()) return loadWithView(scene, options.view, options);
-    if (lowerCaseExtension(scene) == ".json") return loadWithView("", scene, options);
-    return loadPlain(scene, options, "scene \"" + scene + "\"");
+    Scene loaded = loadAny(scene, options);
+    loaded.reach = measureReach(loaded, findCamera(loaded, options.camera));
+    return loaded;
 }
 
 }  // namespace lrsm

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-/// What is in the world at one moment: plain structs, world space, indices instead of pointers.
+/// What is in the world at one moment: plain structs, indices instead of pointers. Places count from Scene::origin: passes and reference know no other space
+/// and call it the world; what is shown to a user adds the origin (worldPlace).
 namespace lrsm {
 
 /// 8-bit sRGB-or-linear texel as stored in the file (how to decode it is the use's matter, as in glTF).
@@ -102,6 +103,8 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     Aabb bounds;                     ///< of all vertices that a triangle uses
+    Aabb reach;                      ///< what voxel grid and light maps are fitted to (reach.h); empty: the bounds
+    glm::dvec3 origin{0.0};          ///< in the file's world, metres; 0 unless the scene stands far away (chooseOrigin)
     std::vector<std::string> notes;  ///< what was skipped, replaced or assumed, one sentence each: shown by `info` and frame.json
 
     std::size_t triangleCount() const
@@ -111,5 +114,17 @@ struct Scene {
         return count;
     }
 };
+
+/// A place of the scene in the file's world.
+inline glm::dvec3 worldPlace(const Scene& scene, const Vec3& place)
+{
+    return scene.origin + glm::dvec3(place);
+}
+
+/// Do voxel grid and light maps leave out part of the scene?
+inline bool reachIsPart(const Scene& scene)
+{
+    return !scene.reach.empty() && !(scene.reach == scene.bounds);
+}
 
 }  // namespace lrsm

@@ -79,6 +79,9 @@ std::string hashScene(const Scene& scene)
     feedAll(out, scene.textures);
     feedAll(out, scene.lights);
     feedAll(out, scene.cameras);
+    // Ordinary scenes have neither, and keep their hash.
+    if (scene.origin != glm::dvec3(0.0)) out << scene.origin.x << scene.origin.y << scene.origin.z;
+    if (reachIsPart(scene)) out << scene.reach.min << scene.reach.max;
     return out.hex();
 }
 

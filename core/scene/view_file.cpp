@@ -27,6 +27,14 @@ Vec3 vectorOf(const JsonReader& in)
     return v;
 }
 
+/// A place, relative to `origin`: subtracted before it is rounded.
+Vec3 placeOf(const JsonReader& in, const glm::dvec3& origin)
+{
+    vectorOf(in);  // refuses what is none
+    const auto xyz = in.items(3);
+    return Vec3(glm::dvec3(xyz[0].number(), xyz[1].number(), xyz[2].number()) - origin);
+}
+
 /// Unit `v`, which came from `key`.
 Vec3 direction(const Vec3& v, const JsonReader& in, const char* key)
 {
@@ -36,13 +44,13 @@ Vec3 direction(const Vec3& v, const JsonReader& in, const char* key)
     return Vec3(d / length);
 }
 
-Camera readCamera(const JsonReader& in)
+Camera readCamera(const JsonReader& in, const glm::dvec3& origin)
 {
     in.allowOnly({"name", "eye", "target", "up", "verticalFovDegrees"});
     Camera camera;
     camera.name = textOr("view", in, "name");
-    camera.position = vectorOf(in["eye"]);
-    camera.forward = direction(vectorOf(in["target"]) - camera.position, in, "target");
+    camera.position = placeOf(in["eye"], origin);
+    camera.forward = direction(placeOf(in["target"], origin) - camera.position, in, "target");
     const Vec3 up = direction(in.has("up") ? vectorOf(in["up"]) : Vec3(0.0f, 1.0f, 0.0f), in, "up");
     const Vec3 upright = up - camera.forward * glm::dot(up, camera.forward);
     if (glm::length(upright) < 1e-4f) in.fail("up", "is parallel to the direction of view");
@@ -60,7 +68,7 @@ Vec3 readIntensity(const JsonReader& in)
     return intensity;
 }
 
-void addLight(const JsonReader& in, View& view)
+void addLight(const JsonReader& in, const glm::dvec3& origin, View& view)
 {
     const std::string type = in["type"].text();
     Light light;
@@ -73,17 +81,18 @@ void addLight(const JsonReader& in, View& view)
     } else if (type == "spot") {
         in.allowOnly({"type", "name", "position", "target", "direction", "color", "intensity", "range", "innerConeAngleDegrees", "outerConeAngleDegrees"});
         light.type = LightType::spot;
-        light.position = vectorOf(in["position"]);
+        light.position = placeOf(in["position"], origin);
         if (in.has("target") == in.has("direction")) in.fail("target", "give either target or direction");
         light.direction =
-            in.has("target") ? direction(vectorOf(in["target"]) - light.position, in, "target") : direction(vectorOf(in["direction"]), in, "direction");
+            in.has("target") ? direction(placeOf(in["target"], origin) - light.position, in, "target") : direction(vectorOf(in["direction"]), in, "direction");
         light.range = numberOr(kInfinity, in, "range", 1e-12, 1e30);
         light.innerConeAngle = float(double(numberOr(0.0f, in, "innerConeAngleDegrees", 0.0, 89.0)) * kDegree);
         light.outerConeAngle = float(double(numberOr(45.0f, in, "outerConeAngleDegrees", 0.01, 89.0)) * kDegree);
         if (!(light.innerConeAngle < light.outerConeAngle)) in.fail("innerConeAngleDegrees", "must be smaller than outerConeAngleDegrees");
     } else if (type == "point") {
         in.allowOnly({"type", "name", "position", "color", "intensity", "range"});
-        const std::vector<Light> faces = splitPointLight(vectorOf(in["position"]), light.intensity, numberOr(kInfinity, in, "range", 1e-12, 1e30), light.name);
+        const std::vector<Light> faces =
+            splitPointLight(placeOf(in["position"], origin), light.intensity, numberOr(kInfinity, in, "range", 1e-12, 1e30), light.name);
         view.lights->insert(view.lights->end(), faces.begin(), faces.end());
         view.notes.push_back("point light \"" + light.name + "\" split into six faces of a cube");
         return;
@@ -96,7 +105,7 @@ void addLight(const JsonReader& in, View& view)
 
 }  // namespace
 
-View parseView(const std::string& text, const std::string& file)
+View parseView(const std::string& text, const std::string& file, const glm::dvec3& origin)
 {
     const JsonReader::Json json = parseJson(text, file);
     const JsonReader in(json, file);
@@ -105,19 +114,19 @@ View parseView(const std::string& text, const std::string& file)
     View view;
     view.scene = textOr("", in, "scene");
     if (in.has("scene") && view.scene.empty()) in.fail("scene", "is empty");
-    if (in.has("camera")) view.camera = readCamera(in["camera"]);
+    if (in.has("camera")) view.camera = readCamera(in["camera"], origin);
     if (in.has("lights")) {
         if (!json["lights"].is_array() || json["lights"].empty()) in.fail("lights", "must be an array of at least one light");
         view.lights.emplace();
-        for (const JsonReader& light : in["lights"].items()) addLight(light, view);
+        for (const JsonReader& light : in["lights"].items()) addLight(light, origin, view);
     }
     return view;
 }
 
-View readViewFile(const std::string& path)
+View readViewFile(const std::string& path, const glm::dvec3& origin)
 {
     const std::vector<unsigned char> bytes = readFile(path);
-    return parseView(std::string(bytes.begin(), bytes.end()), path);
+    return parseView(std::string(bytes.begin(), bytes.end()), path, origin);
 }
 
 }  // namespace lrsm

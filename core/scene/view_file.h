@@ -26,10 +26,10 @@ struct View {
     std::vector<std::string> notes;
 };
 
-/// Throws InputError "FILE: key: why" for anything but the above; an unknown key is an error that names it.
-View readViewFile(const std::string& path);
+/// Throws InputError "FILE: key: why" for anything but the above; an unknown key is an error that names it. Places come out relative to `origin`, metres.
+View readViewFile(const std::string& path, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// The same from text; `file` is for the messages.
-View parseView(const std::string& text, const std::string& file);
+View parseView(const std::string& text, const std::string& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
 }  // namespace lrsm

@@ -13,6 +13,8 @@ namespace lrsm {
 enum class Storage { gpu, float32 };          ///< Table 1's formats after every pass, or float32 throughout
 enum class FilterFraction { exact, fixed8 };  ///< sampler fractions in float, or rounded to 1/256 (what D3D11 guarantees); key "8bit"
 
+enum class Extent { reach, scene };  ///< what a grid or a map is fitted to: what camera and lights reach (Scene::reach), or the whole scene
+
 enum class Voxelization { conservative, thin, raster };
 enum class MipFilter { mean, coverage, max };
 enum class OpacityAxes { isotropic, directional };  ///< one opacity a voxel, or an area density along each axis
@@ -30,6 +32,7 @@ struct VoxelSettings {
     MipFilter mipFilter = MipFilter::mean;
     OpacityAxes axes = OpacityAxes::directional;
     Storage storage = Storage::gpu;
+    Extent extent = Extent::reach;
     bool operator==(const VoxelSettings&) const = default;
 };
 
@@ -37,6 +40,7 @@ struct RsmSettings {
     int resolution = 1024;  ///< texels along an edge, power of two, 2..8192
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
+    Extent extent = Extent::reach;
     bool operator==(const RsmSettings&) const = default;
 };
 

@@ -135,7 +135,7 @@ SettingRow methodRow()
 
 void addBuildingRows(std::vector<SettingRow>& rows)
 {
-    const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"};
+    const Names storage = {"gpu", "float32"}, rounding = {"d3d", "nearest_even"}, extent = {"reach", "scene"};
 
     rows.push_back(choice<&SurfaceSettings::textureFilter>(
         {"texture_filter", "", "of RSM and G-buffer: mips by derivatives, or the base level alone", "D3D11.3 spec 7.18: trilinear"},
@@ -149,12 +149,16 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(
         choice<&V::axes>({"opacity_axes", "", "one opacity a voxel, or an area density along each axis", "paper: isotropic"}, {"isotropic", "directional"}));
     rows.push_back(choice<&V::storage>({"voxel_storage", "", "mips in UNORM8 or in float32", "paper Table 1: gpu"}, storage));
+    rows.push_back(choice<&V::extent>(
+        {"voxel_extent", "", "grid over what camera and lights reach, where that is far less than the scene; or over all of it", "ours; paper: scene"},
+        extent));
 
     rows.push_back(
         whole<&R::resolution>({"rsm_resolution", "texels", "texels along an edge of the reflective shadow map", "paper Table 2: 1024"}, powersOfTwo(2, 8192)));
     rows.push_back(choice<&R::storage>({"rsm_storage", "", "RSM attributes in half or in float32", "paper Table 1: gpu"}, storage));
     rows.push_back(
         choice<&R::halfRounding>({"rsm_half_rounding", "", "float to half: toward zero (D3D11) or to nearest even", "D3D11.3 spec 3.2.2: d3d"}, rounding));
+    rows.push_back(choice<&R::extent>({"rsm_extent", "", "a light's map over the same reach, or over the whole scene", "ours; paper: scene"}, extent));
 
     rows.push_back(whole<&L::depthLayers>({"depth_layers", "", "depth slices, a + 1", "paper Table 2: 2, 3"}, {1, 16}));
     rows.push_back(whole<&L::normalLayers>({"normal_layers", "", "slices of <n.l>, b + 1", "paper Table 2: 2"}, {1, 8}));

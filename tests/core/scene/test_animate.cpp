@@ -117,11 +117,11 @@ TEST_CASE("animated nodes move their children, in each animation's own way", "[s
         CHECK(b.load({time, 1}).meshes.at(0).positions[0].x == (time < 1 ? 1.0f : 3.0f));
         CHECK(b.load({time, -1}).meshes.at(0).positions[0] == Vec3(1, 0, 0));
     }
-    CHECK(b.error({0, 2}).find("there is no animation 2") != std::string::npos);
-    CHECK(b.error({0, -2}).find("animation") != std::string::npos);
-    CHECK(b.error({std::nanf(""), 0}).find("time") != std::string::npos);
-    CHECK(GltfBuilder().error({3, 0}) == "");  // nothing to animate is no error
-    CHECK(GltfBuilder().error({3, 1}) != "");
+    CHECK(b.error({.animation = 2}).find("there is no animation 2") != std::string::npos);
+    CHECK(b.error({.animation = -2}).find("animation") != std::string::npos);
+    CHECK(b.error({.time = std::nanf("")}).find("time") != std::string::npos);
+    CHECK(GltfBuilder().error({.time = 3}) == "");  // nothing to animate is no error
+    CHECK(GltfBuilder().error({.time = 3, .animation = 1}) != "");
 }
 
 TEST_CASE("a skinned vertex is the weighted sum of its joints' motions, its own node's transform is ignored", "[scene][animate][skin]")

@@ -156,7 +156,8 @@ TEST_CASE("derivatives: those of the neighbouring pixels' rays on the plane", "[
                 const SurfaceHit hit{0, 0, float(b12 - b2), float(b2)};
                 const Vec3 filtered = evaluateSurface(scene, hit, toEye, &here).albedo;
                 const auto at = [&](double level) {
-                    return Vec3(sampleTextureSrgb(scene.textures[0], {Vec2(float(p.x + 50), float(100 - (50 - p.z))), Vec2(float(std::exp2(level) / 64), 0), Vec2(0)}));
+                    return Vec3(
+                        sampleTextureSrgb(scene.textures[0], {Vec2(float(p.x + 50), float(100 - (50 - p.z))), Vec2(float(std::exp2(level) / 64), 0), Vec2(0)}));
                 };
                 const Vec3 expected = at(std::log2(texels));
                 CAPTURE(perspective, x, y, texels);

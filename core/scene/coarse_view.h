@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+#include <vector>
+
+/// What a camera or a light meets, by a few hundred rays and without any acceleration structure: enough to say how far it reaches, before a scene is posed
+/// for the passes.
+namespace lrsm {
+
+/// Rays of a square pencil from one point.
+struct Viewpoint {
+    Vec3 position{0.0f};
+    Vec3 forward{0.0f, 0.0f, -1.0f}, up{0.0f, 1.0f, 0.0f};  ///< unit, at right angles
+    float tanHalfWidth = 1.0f, tanHalfHeight = 1.0f;        ///< of the half angles
+    bool round = false;                                     ///< rays in the inscribed ellipse alone
+};
+
+/// A perspective camera, for a picture of 16:9; a spot's cone; a cube face. A directional light or an orthographic camera has no one point.
+Viewpoint viewpointOf(const Camera& camera);
+Viewpoint viewpointOf(const Light& light);
+
+struct CoarseHit {
+    double distance = 0.0;  ///< metres
+    Vec3 position{0.0f};
+    std::uint32_t mesh = 0;
+    bool front = true;  ///< the ray came from the triangle's front
+};
+
+inline constexpr int kCoarseEdge = 32;  ///< rays along an edge
+
+struct CoarseView {
+    std::vector<CoarseHit> hits;  ///< nearest along each ray that meets anything
+    std::size_t rays = 0;         ///< cast
+};
+
+/// Backs of single-sided materials are looked through, as eye and light do; alpha masks are solid. Linear in the triangles.
+CoarseView coarseView(const Scene& scene, const Viewpoint& from);
+
+}  // namespace lrsm

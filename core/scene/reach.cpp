@@ -1,0 +1,120 @@
+#include "core/scene/reach.h"
+
+#include "core/scene/coarse_view.h"
+
+#include <algorithm>
+
+namespace lrsm {
+namespace {
+
+/// Vertices count within so many reaches: the far ends of what is seen.
+constexpr double kVertexReaches = 2.0;
+
+/// What is met from a viewpoint, nearest first, and the distance within which lies kReachShare of it.
+struct Met {
+    std::vector<CoarseHit> hits;
+    double reach = 0.0;
+};
+
+Met metFrom(const Scene& scene, const Viewpoint& from, bool light)
+{
+    std::vector<CoarseHit> hits = coarseView(scene, from).hits;
+    std::stable_sort(hits.begin(), hits.end(), [](const CoarseHit& a, const CoarseHit& b) { return a.distance < b.distance; });
+    const auto weight = [light](const CoarseHit& hit) {
+        const double d = std::max(hit.distance, 1e-30);
+        return light ? 1.0 / (d * d) : 1.0 / std::sqrt(d);
+    };
+    double all = 0.0, sum = 0.0;
+    for (const CoarseHit& hit : hits) all += weight(hit);
+    std::size_t count = 0;
+    while (count < hits.size() && sum < kReachShare * all) sum += weight(hits[count++]);
+    const double reach = count > 0 ? hits[count - 1].distance : 0.0;
+    return {std::move(hits), reach};
+}
+
+bool shines(const Light& light)
+{
+    return light.intensity != Vec3(0.0f);
+}
+
+float longest(const Aabb& box)
+{
+    const Vec3 extent = box.extent();
+    return std::max({extent.x, extent.y, extent.z});
+}
+
+/// Adds what is reached from one viewpoint: the vertices about it, and what its rays meet within `struckReaches` reaches.
+void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, double struckReaches)
+{
+    const Met met = metFrom(scene, from, light);
+    if (met.hits.empty()) return;
+    for (const CoarseHit& hit : met.hits)
+        if (hit.distance <= struckReaches * met.reach) box.include(hit.position);
+    const double radius = kVertexReaches * met.reach;
+    for (const Mesh& mesh : scene.meshes)
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t v : triangle) {
+                const glm::dvec3 d = glm::dvec3(mesh.positions[v]) - glm::dvec3(from.position);
+                if (glm::dot(d, d) <= radius * radius) box.include(mesh.positions[v]);
+            }
+}
+
+/// Grown until no vertex is left within its own length: what stands together is not cut apart.
+Aabb withNeighbours(Aabb box, const Scene& scene)
+{
+    for (;;) {
+        const Vec3 margin(longest(box));
+        const Aabb about{box.min - margin, box.max + margin};
+        Aabb grown = box;
+        for (const Mesh& mesh : scene.meshes)
+            for (const auto& triangle : mesh.triangles)
+                for (const std::uint32_t v : triangle) {
+                    const Vec3& p = mesh.positions[v];
+                    if (glm::all(glm::greaterThanEqual(p, about.min)) && glm::all(glm::lessThanEqual(p, about.max))) grown.include(p);
+                }
+        if (grown == box || kReachGain * longest(grown) > longest(scene.bounds)) return grown;
+        box = grown;
+    }
+}
+
+}  // namespace
+
+std::optional<double> reachOf(const Scene& scene, const Camera& camera)
+{
+    if (!camera.perspective) return {};
+    const Met met = metFrom(scene, viewpointOf(camera), false);
+    if (met.hits.empty()) return {};
+    return met.reach;
+}
+
+Aabb measureReach(const Scene& scene, const Camera& camera)
+{
+    if (!camera.perspective || scene.bounds.empty()) return scene.bounds;
+    const bool sun = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.type == LightType::directional && shines(l); });
+
+    Aabb box;
+    const auto gains = [&] { return box.empty() || kReachGain * longest(box) <= longest(scene.bounds); };
+    include(box, scene, viewpointOf(camera), false, sun ? kVertexReaches : 0.0);  // a sun lights all of what is seen, and what reflects it is there
+    for (const Light& light : scene.lights) {
+        if (!gains()) return scene.bounds;  // the ordinary case, before any light is looked at
+        if (light.type != LightType::directional && shines(light)) include(box, scene, viewpointOf(light), true, 1.0);
+    }
+    if (!gains() || box.empty() || !(longest(box) > 0.0f)) return scene.bounds;
+    const Aabb whole = withNeighbours(box, scene);
+    return kReachGain * longest(whole) <= longest(scene.bounds) ? whole : box;
+}
+
+glm::dvec3 chooseOrigin(const Scene& scene, const Camera& camera)
+{
+    // Where nothing is seen, the scene's far end.
+    const Vec3 far = glm::max(glm::abs(scene.bounds.min - camera.position), glm::abs(scene.bounds.max - camera.position));
+    double reach = reachOf(scene, camera).value_or(double(std::max({far.x, far.y, far.z})));
+    // So far away that all of it may have rounded to one place.
+    const Vec3 away = glm::abs(camera.position);
+    reach = std::max(reach, 0x1p-16 * double(std::max({away.x, away.y, away.z})));
+    if (!(reach > 0.0) || !std::isfinite(reach)) return glm::dvec3(0.0);
+    const double lattice = std::ldexp(1.0, std::ilogb(2.0 * kOriginReach * reach) + 1);  // the next power of two
+    return glm::floor(glm::dvec3(camera.position) / lattice + 0.5) * lattice;
+}
+
+}  // namespace lrsm
