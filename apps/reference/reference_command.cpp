@@ -28,7 +28,7 @@ struct ReferenceArguments : CommonOptions {
     int block = 16;
     float specularAperture = 0.0f;
     double checkpointSeconds = 60.0;
-    bool resume = false, bareLoop = false;
+    bool resume = false, bareLoop = false, eyeSide = false;
 };
 
 ReferenceSettings chosenReference(const ReferenceArguments& options)
@@ -44,6 +44,7 @@ ReferenceSettings chosenReference(const ReferenceArguments& options)
     if ((1 << settings.blockBits) != options.block) throw InputError("--block " + std::to_string(options.block), "must be a power of two, 1 .. 4096");
     settings.specularApertureDegrees = options.specularAperture;
     settings.seed = options.seed;
+    settings.fromLights = !options.eyeSide;
     validate(settings);
     return settings;
 }
@@ -109,12 +110,12 @@ int runReference(const ReferenceArguments& options)
     const Scene scene = loadChosenScene(options);
     const Camera camera = chosenCamera(scene, options);
     const std::string sceneHash = hashScene(scene);
-    Checkpoint checkpoint{identifyReference(settings, camera, sceneHash), sampleUnit(scene), {}};
-    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
     Progress progress(options.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, settings);
+    Checkpoint checkpoint{identifyReference(tracer, camera, sceneHash), tracer.unit(), {}};
+    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
     const CatchInterrupts catching;
     const TraceOptions trace{.folder = options.output,
@@ -179,6 +180,7 @@ Command addReference(CLI::App& program)
     parser->add_flag("--resume", options->resume, "continue what the folder holds, to the same bits; with a larger --spp, add to it");
     parser->add_option("--checkpoint-seconds", options->checkpointSeconds, "how often samples.bin is written; a kill loses no more")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
+    parser->add_flag("--eye-side-only", options->eyeSide, "find lit surfaces by the paths' own rays alone: more noise, the same mean; to check the other way");
     parser->add_flag("--bare-loop", options->bareLoop, "also time the same rays without shading");
     return {parser, [options] { return runReference(*options); }};
 }

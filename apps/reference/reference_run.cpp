@@ -78,8 +78,9 @@ Json speedJson(const RayCounts& rays, double seconds)
 
 }  // namespace
 
-Identity identifyReference(const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash)
+Identity identifyReference(const PathTracer& tracer, const Camera& camera, const std::string& sceneHash)
 {
+    const ReferenceSettings& settings = tracer.settings();
     Json eye = cameraJson(camera);
     eye.erase("name");
     return {{"version", LRSM_VERSION},
@@ -89,7 +90,8 @@ Identity identifyReference(const ReferenceSettings& settings, const Camera& came
             {"model", modelName(settings.transport)},
             {"seed", std::to_string(settings.seed)},
             {"block", std::to_string(1 << settings.blockBits)},
-            {"specular_aperture_degrees", Json(settings.specularApertureDegrees).dump()}};
+            {"specular_aperture_degrees", Json(settings.specularApertureDegrees).dump()},
+            {"light_guide_sha256", tracer.guide().sha256}};
 }
 
 bool traceRange(const PathTracer& tracer, ReferenceState& state, const SampleRange& range, Checkpoint& checkpoint, const TraceOptions& options)
@@ -110,6 +112,7 @@ Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camer
     json["settings"] = {{"model", modelName(settings.transport)},
                         {"seed", settings.seed},
                         {"block", 1 << settings.blockBits},
+                        {"from_lights", settings.fromLights},
                         {"specular_aperture_degrees", settings.specularApertureDegrees}};
     json["scene"] = sceneJson(scene, sceneHash);
     json["camera"] = cameraJson(camera);

@@ -11,8 +11,8 @@
 /// One reference from its first sample to its files, interruptible: what `lrsm reference` does, and what measures against a truth does too.
 namespace lrsm {
 
-/// What samples belong to: program version, scene, camera, size, model, seed, block, aperture of the cone layer.
-Identity identifyReference(const ReferenceSettings& settings, const Camera& camera, const std::string& sceneHash);
+/// What samples belong to: program version, scene, camera, size, model, seed, block, aperture of the cone layer, what the pilot has found.
+Identity identifyReference(const PathTracer& tracer, const Camera& camera, const std::string& sceneHash);
 
 struct TraceOptions {
     std::string folder;  ///< of samples.bin; empty: no checkpoints
