@@ -14,7 +14,7 @@ void addSpread(std::vector<std::uint32_t>& counts, std::size_t side, const Texel
 
 namespace {
 
-constexpr int kLargestSide = 128, kLeastSide = 4, kMostTexels = kLargestSide * kLargestSide;
+constexpr int kLargestSide = 32, kLeastSide = 4, kMostTexels = 4096;
 constexpr int kPixelsAcross = 4;                       // of a tile, each way
 constexpr int kRayBits = 4, kMostRayBits = 8;          // log2 of the rays of a pixel
 constexpr std::size_t kTilesForFewRays = 64;           // a small picture has more rays a pixel, so that the pilot still sees the scene

@@ -9,7 +9,7 @@ namespace {
 constexpr int kGroupBits = 4;
 constexpr int kPointsASampleBits = 4;        // log2 of a pool's points for each sample that a pixel draws from it
 constexpr std::size_t kSpecularStride = 4;   // weighing by a lobe costs as much as several by the cosine
-constexpr float kPoolCandidates = 16.0f;         // c of the pools' technique
+constexpr float kPoolCandidates = 8.0f;         // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
 }  // namespace
