@@ -19,12 +19,20 @@ constexpr int kPixelsAcross = 4;                       // of a tile, each way
 constexpr int kRayBits = 4, kMostRayBits = 8;          // log2 of the rays of a pixel
 constexpr std::size_t kTilesForFewRays = 64;           // a small picture has more rays a pixel, so that the pilot still sees the scene
 constexpr int kPoolBits = 8;
+constexpr std::uint32_t kMeanCount = 16, kMostCount = 1024;  // that a cosine ray counts, as bright as the mean and at the most
 constexpr float kUniformShare = 0.1f;                  // of `base`: rays that the pilot has not found, it may have missed
 constexpr std::array<std::uint32_t, 2> kPilotKey = {0x70696c6fu, 0x74000000u};
 
+/// A point of a light that the pilot has found, and what it brings.
+struct Finding {
+    LightPoint point;
+    float brightness = 0.0f;  ///< of a cosine ray: what it carries. 0: one of equal draws
+    std::uint32_t count = 1;
+};
+
 /// What the pilot has found from one tile.
 struct Findings {
-    std::vector<LightPoint> seen, further;
+    std::vector<Finding> seen, further;
 };
 
 /// Runs through the tiles in parallel; each writes what is its own.
@@ -65,7 +73,7 @@ class Pilot {
                     const Vec3 direction = glm::normalize(pool.position(chosen) - receiver.origin);
                     if (radianceFrom(tracer, pool, chosen, receiver, direction) == Vec3(0.0f)) continue;
                     const auto at = guide_.maps[pool.points[chosen].light].coordinates(pool.position(chosen));
-                    if (at) found.seen.push_back({pool.points[chosen].light, at->at});
+                    if (at) found.seen.push_back({{pool.points[chosen].light, at->at}, 0.0f, kMeanCount});
                 }
             });
         });
@@ -102,7 +110,7 @@ class Pilot {
     }
 
     /// One cosine ray; where it meets light is added to `lit`, what it strikes is returned.
-    std::optional<Surface> castRay(Tracer& tracer, const Surface& from, UnitPoint xi, std::vector<LightPoint>& lit) const
+    std::optional<Surface> castRay(Tracer& tracer, const Surface& from, UnitPoint xi, std::vector<Finding>& lit) const
     {
         const Vec3 direction = cosineDirection(from.normal, xi);
         if (!(glm::dot(from.geometricNormal, direction) > 0.0f)) return std::nullopt;
@@ -110,8 +118,9 @@ class Pilot {
         const std::optional<RayHit> hit = tracer.closestHit(ray);
         if (!hit || !reflects(tracer.scene(), *hit)) return std::nullopt;
         visitLights(tracer, ray, *hit, [&](std::size_t k, const Surface& surface, const LightSample& sample) {
-            if (diffuseRadiance(surface, sample) == Vec3(0.0f)) return;
-            if (const auto at = guide_.maps[k].coordinates(surface.position)) lit.push_back({std::uint32_t(k), at->at});
+            const Vec3 radiance = diffuseRadiance(surface, sample);
+            const std::optional<LightCoordinates> at = guide_.maps[k].coordinates(surface.position);
+            if (at && radiance != Vec3(0.0f)) lit.push_back({{std::uint32_t(k), at->at}, radiance.x + radiance.y + radiance.z});
         });
         if (transport_ == Transport::single) return std::nullopt;
         return evaluateSurface(tracer.scene(), hit->surface, -direction);
@@ -125,22 +134,37 @@ class Pilot {
     int rayBits_;
 };
 
-std::vector<TexelCount> countTexels(const LightGrids& grids, std::span<const LightPoint> points)
+std::vector<TexelCount> countTexels(const LightGrids& grids, std::span<const Finding> findings)
 {
-    std::vector<std::uint32_t> texels;
-    texels.reserve(points.size());
-    for (const LightPoint& point : points) texels.push_back(std::uint32_t(grids.texelOf(point)));
-    std::sort(texels.begin(), texels.end());
+    std::vector<TexelCount> each;
+    each.reserve(findings.size());
+    for (const Finding& one : findings) each.push_back({std::uint32_t(grids.texelOf(one.point)), one.count});
+    std::sort(each.begin(), each.end(), [](const TexelCount& a, const TexelCount& b) { return a.texel < b.texel; });
     std::vector<TexelCount> counts;
-    for (const std::uint32_t texel : texels) {
-        if (counts.empty() || counts.back().texel != texel) counts.push_back({texel, 0});
-        ++counts.back().count;
+    for (const TexelCount& one : each) {
+        if (counts.empty() || counts.back().texel != one.texel) counts.push_back({one.texel, 0});
+        counts.back().count += one.count;
     }
     return counts;
 }
 
+/// Whole numbers in proportion to what each ray has brought, so that sums do not depend on their order.
+void countBrightness(std::vector<Findings>& findings, std::vector<Finding> Findings::*member)
+{
+    double sum = 0.0;
+    std::size_t number = 0;
+    for (const Findings& tile : findings)
+        for (const Finding& one : tile.*member) {
+            sum += double(one.brightness);
+            ++number;
+        }
+    const double scale = sum > 0.0 ? kMeanCount * double(number) / sum : 0.0;
+    for (Findings& tile : findings)
+        for (Finding& one : tile.*member) one.count = std::uint32_t(std::clamp(std::nearbyint(scale * double(one.brightness)), 1.0, double(kMostCount)));
+}
+
 /// What all tiles have found, smoothed, and a uniform part; empty where nothing was found.
-std::vector<float> baseWeights(const LightGrids& grids, std::span<const LightPoint> points)
+std::vector<float> baseWeights(const LightGrids& grids, std::span<const Finding> points)
 {
     std::vector<std::uint32_t> counts(grids.texels(), 0);
     for (const TexelCount& one : countTexels(grids, points)) addSpread(counts, grids.side(), one, 1);
@@ -154,11 +178,18 @@ std::vector<float> baseWeights(const LightGrids& grids, std::span<const LightPoi
 }
 
 template <class Member>
-std::vector<LightPoint> joined(const std::vector<Findings>& findings, Member member)
+std::vector<Finding> joined(const std::vector<Findings>& findings, Member member)
 {
-    std::vector<LightPoint> all;
+    std::vector<Finding> all;
     for (const Findings& one : findings) all.insert(all.end(), (one.*member).begin(), (one.*member).end());
     return all;
+}
+
+std::vector<LightPoint> pointsOf(const std::vector<Finding>& findings)
+{
+    std::vector<LightPoint> points;
+    for (const Finding& one : findings) points.push_back(one.point);
+    return points;
 }
 
 void setSeen(LightGuide& guide, const std::vector<Findings>& findings)
@@ -188,10 +219,12 @@ LightGuide learnLightGuide(const EmbreeScene& embree, std::span<const LightSampl
     const Pilot pilot(embree, lights, primary, transport, guide);
 
     // Along rays of the surfaces that the eye sees
-    const std::vector<Findings> byRays = pilot.castRays();
-    const std::vector<LightPoint> seen = joined(byRays, &Findings::seen), further = joined(byRays, &Findings::further);
+    std::vector<Findings> byRays = pilot.castRays();
+    countBrightness(byRays, &Findings::seen);
+    countBrightness(byRays, &Findings::further);
+    const std::vector<Finding> seen = joined(byRays, &Findings::seen), further = joined(byRays, &Findings::further);
     const int side = std::clamp(int(std::sqrt(double(kMostTexels) / double(lights.size()))), kLeastSide, kLargestSide);
-    guide.grids = std::make_shared<LightGrids>(lights.size(), side, seen);
+    guide.grids = std::make_shared<LightGrids>(lights.size(), side, pointsOf(seen));
     setSeen(guide, byRays);
     if (!guide.useful()) guide.base.assign(guide.grids->texels(), 1.0f);
 

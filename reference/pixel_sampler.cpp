@@ -6,7 +6,7 @@
 namespace lrsm {
 namespace {
 
-constexpr int kGroupBits = 4;
+constexpr int kGroupBits = 6;
 constexpr int kPointsASampleBits = 4;        // log2 of a pool's points for each sample that a pixel draws from it
 constexpr std::size_t kSpecularStride = 4;   // weighing by a lobe costs as much as several by the cosine
 constexpr float kPoolCandidates = 8.0f;         // c of the pools' technique
