@@ -50,6 +50,7 @@ class LightDensity {
     LightDensity(std::shared_ptr<const LightGrids> grids, std::vector<float> weights);
 
     bool empty() const { return weights_.empty(); }
+    const LightGrids& grids() const { return *grids_; }
     LightPoint draw(UnitPoint xi) const;
     /// Per unit of the square's area; the integral over all squares is 1.
     float operator()(const LightPoint& point) const;

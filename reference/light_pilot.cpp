@@ -10,29 +10,42 @@
 
 namespace lrsm {
 
-void addSpread(std::vector<std::uint32_t>& counts, std::size_t side, const TexelCount& seen, std::uint32_t weight);
-
 namespace {
 
 constexpr int kLargestSide = 32, kLeastSide = 4, kMostTexels = 4096;
 constexpr int kPixelsAcross = 4;                       // of a tile, each way
 constexpr int kRayBits = 4, kMostRayBits = 8;          // log2 of the rays of a pixel
 constexpr std::size_t kTilesForFewRays = 64;           // a small picture has more rays a pixel, so that the pilot still sees the scene
+constexpr double kEvenSpread = 0.05;                   // of the variance over the squared mean
 constexpr int kPoolBits = 8;
-constexpr std::uint32_t kMeanCount = 16, kMostCount = 1024;  // that a cosine ray counts, as bright as the mean and at the most
+constexpr std::uint32_t kMeanLight = 16, kMostLight = 1024;  // that a cosine ray counts, as bright as the mean and at the most
 constexpr float kUniformShare = 0.1f;                  // of `base`: rays that the pilot has not found, it may have missed
 constexpr std::array<std::uint32_t, 2> kPilotKey = {0x70696c6fu, 0x74000000u};
 
-/// A point of a light that the pilot has found, and what it brings.
+/// A point of a light that the pilot has looked at.
 struct Finding {
     LightPoint point;
-    float brightness = 0.0f;  ///< of a cosine ray: what it carries. 0: one of equal draws
-    std::uint32_t count = 1;
+    float brightness = 0.0f;      ///< that a cosine ray has brought from it
+    std::uint32_t light = 0;      ///< the same in whole numbers
+    bool tried = false, reached = false;  ///< one of a pool, and it was seen
 };
 
 /// What the pilot has found from one tile.
 struct Findings {
     std::vector<Finding> seen, further;
+    double rays = 0.0, brightness = 0.0, squares = 0.0;  ///< of what the eye's surfaces see: rays, sum and sum of squares of what they bring
+
+    /// One more ray, which has found what `seen` holds from `first` on.
+    void countRay(std::size_t first)
+    {
+        double sum = 0.0;
+        for (std::size_t i = first; i < seen.size(); ++i) sum += double(seen[i].brightness);
+        ++rays;
+        brightness += sum;
+        squares += sum * sum;
+    }
+    /// All rays find the same light: there is nothing to win for technique b.
+    bool even() const { return squares * rays <= (1.0 + kEvenSpread) * brightness * brightness && brightness > 0.0; }
 };
 
 /// Runs through the tiles in parallel; each writes what is its own.
@@ -50,7 +63,9 @@ class Pilot {
             visitPixels(tile, [&](std::uint32_t pixel, const Surface& surface) {
                 const SobolBlock directions = points(pixel, Purpose::pilotDirection, rayBits_), onwards = points(pixel, Purpose::pilotFurther, rayBits_);
                 for (std::uint32_t i = 0; i < (1u << rayBits_); ++i) {
+                    const std::size_t before = found.seen.size();
                     const std::optional<Surface> struck = castRay(tracer, surface, directions.point(i), found.seen);
+                    found.countRay(before);
                     if (struck && transport_ == Transport::full) castRay(tracer, *struck, onwards.point(i), found.further);
                 }
             });
@@ -60,8 +75,8 @@ class Pilot {
     std::vector<Findings> drawPools() const
     {
         return overTiles([&](std::size_t tile, Tracer& tracer, Findings& found) {
-            const LightDensity density = guide_.densityFor(tile);
-            const LightPool pool = drawPool(tracer, guide_.maps, density, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits);
+            const TileGuide guide = guide_.guideFor(tile);
+            const LightPool pool = drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits);
             PoolWeights weights;
             visitPixels(tile, [&](std::uint32_t pixel, const Surface& surface) {
                 const LightReceiver receiver = receiverAt(tracer, surface);
@@ -71,9 +86,10 @@ class Pilot {
                 for (std::uint32_t i = 0; i < (1u << rayBits_); ++i) {
                     const std::size_t chosen = weights.choose(choices.point(i).u).index;
                     const Vec3 direction = glm::normalize(pool.position(chosen) - receiver.origin);
-                    if (radianceFrom(tracer, pool, chosen, receiver, direction) == Vec3(0.0f)) continue;
-                    const auto at = guide_.maps[pool.points[chosen].light].coordinates(pool.position(chosen));
-                    if (at) found.seen.push_back({{pool.points[chosen].light, at->at}, 0.0f, kMeanCount});
+                    const bool reached = radianceFrom(tracer, pool, chosen, receiver, direction) != Vec3(0.0f);
+                    const std::optional<LightCoordinates> at = guide_.maps[pool.points[chosen].light].coordinates(pool.position(chosen));
+                    // Drawn in proportion to what they bring: all that are reached bring the same.
+                    if (at) found.seen.push_back({{pool.points[chosen].light, at->at}, 0.0f, reached ? kMeanLight : 0, true, reached});
                 }
             });
         });
@@ -138,12 +154,14 @@ std::vector<TexelCount> countTexels(const LightGrids& grids, std::span<const Fin
 {
     std::vector<TexelCount> each;
     each.reserve(findings.size());
-    for (const Finding& one : findings) each.push_back({std::uint32_t(grids.texelOf(one.point)), one.count});
+    for (const Finding& one : findings) each.push_back({std::uint32_t(grids.texelOf(one.point)), one.light, one.tried, one.reached});
     std::sort(each.begin(), each.end(), [](const TexelCount& a, const TexelCount& b) { return a.texel < b.texel; });
     std::vector<TexelCount> counts;
     for (const TexelCount& one : each) {
-        if (counts.empty() || counts.back().texel != one.texel) counts.push_back({one.texel, 0});
-        counts.back().count += one.count;
+        if (counts.empty() || counts.back().texel != one.texel) counts.push_back({one.texel, 0, 0, 0});
+        counts.back().light += one.light;
+        counts.back().tried += one.tried;
+        counts.back().reached += one.reached;
     }
     return counts;
 }
@@ -158,22 +176,21 @@ void countBrightness(std::vector<Findings>& findings, std::vector<Finding> Findi
             sum += double(one.brightness);
             ++number;
         }
-    const double scale = sum > 0.0 ? kMeanCount * double(number) / sum : 0.0;
+    const double scale = sum > 0.0 ? kMeanLight * double(number) / sum : 0.0;
     for (Findings& tile : findings)
-        for (Finding& one : tile.*member) one.count = std::uint32_t(std::clamp(std::nearbyint(scale * double(one.brightness)), 1.0, double(kMostCount)));
+        for (Finding& one : tile.*member) one.light = std::uint32_t(std::clamp(std::nearbyint(scale * double(one.brightness)), 1.0, double(kMostLight)));
 }
 
 /// What all tiles have found, smoothed, and a uniform part; empty where nothing was found.
 std::vector<float> baseWeights(const LightGrids& grids, std::span<const Finding> points)
 {
-    std::vector<std::uint32_t> counts(grids.texels(), 0);
-    for (const TexelCount& one : countTexels(grids, points)) addSpread(counts, grids.side(), one, 1);
-    std::uint64_t total = 0;
-    for (const std::uint32_t count : counts) total += count;
-    if (total == 0) return {};
+    LightGuideCounts counts(grids);
+    for (const TexelCount& one : countTexels(grids, points)) counts.add(one, 1);
+    const auto total = double(counts.totalLight());
+    if (total == 0.0) return {};
     std::vector<float> weights(grids.texels());
     for (std::size_t i = 0; i < weights.size(); ++i)
-        weights[i] = kUniformShare / (grids.perArea(i) * float(grids.lights())) + (1.0f - kUniformShare) * float(double(counts[i]) / double(total));
+        weights[i] = kUniformShare / (grids.perArea(i) * float(grids.lights())) + (1.0f - kUniformShare) * float(double(counts.light[i]) / total);
     return weights;
 }
 
@@ -203,6 +220,7 @@ std::string hashOf(const LightGuide& guide, const std::vector<TexelCount>& furth
 {
     Sha256 hash;
     for (const std::vector<float>& cuts : guide.grids->cuts()) hash.add(cuts);
+    hash.add(guide.even);
     for (const std::vector<TexelCount>& tile : guide.seen) hash.add(std::vector<std::uint64_t>{tile.size()}).add(tile);
     return hash.add(further).hex();
 }
@@ -232,8 +250,10 @@ LightGuide learnLightGuide(const EmbreeScene& embree, std::span<const LightSampl
     std::vector<Findings> all = pilot.drawPools();
     for (std::size_t tile = 0; tile < all.size(); ++tile) all[tile].seen.insert(all[tile].seen.end(), byRays[tile].seen.begin(), byRays[tile].seen.end());
     setSeen(guide, all);
-    if (std::vector<float> weights = transport == Transport::full ? baseWeights(*guide.grids, further) : std::vector<float>(); !weights.empty())
-        guide.further = LightDensity(guide.grids, std::move(weights));
+    for (const Findings& tile : byRays) guide.even.push_back(tile.even());
+    const bool allEven = std::all_of(byRays.begin(), byRays.end(), [](const Findings& tile) { return tile.even() || tile.rays == 0.0; });
+    if (std::vector<float> weights = transport == Transport::full && !allEven ? baseWeights(*guide.grids, further) : std::vector<float>(); !weights.empty())
+        guide.further.density = LightDensity(guide.grids, std::move(weights));
     guide.sha256 = hashOf(guide, countTexels(*guide.grids, further));
     return guide;
 }

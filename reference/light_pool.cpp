@@ -24,7 +24,7 @@ void reserve(LightPool& pool, std::size_t count)
 struct Found {
     std::uint64_t order = 0;  ///< along the lights' squares, see hilbertIndex
     Surface surface;
-    float density = 0.0f;
+    float density = 0.0f, reach = 1.0f;
     LightPool::Point point;
 };
 
@@ -49,7 +49,7 @@ std::uint32_t hilbertIndex(UnitPoint at)
 }
 
 /// What one ray of a light strikes, lit as technique a finds it.
-std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, const LightDensity& density, const LightPoint& drawn)
+std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const LightPoint& drawn)
 {
     const LightMap& map = maps[drawn.light];
     const std::optional<Ray> ray = map.ray(drawn.at, tracer.lightOffset(drawn.light));
@@ -67,9 +67,11 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     // The density is that of the point, not of the draw, so that both techniques know the same.
     const std::optional<LightCoordinates> at = map.coordinates(surface.position);
     if (!at) return std::nullopt;
-    const auto perArea = float(double(density({drawn.light, at->at})) * at->perArea * double(cosine));
+    const LightPoint point{drawn.light, at->at};
+    const auto perArea = float(double(guide.density(point)) * at->perArea * double(cosine));
     if (!(perArea > 0.0f) || !std::isfinite(perArea)) return std::nullopt;
-    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at), surface, perArea, {hit->surface, radiance, drawn.light}};
+    const float reach = guide.reach.empty() ? 1.0f : guide.reach[guide.density.grids().texelOf(point)];
+    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at), surface, perArea, reach, {hit->surface, radiance, drawn.light}};
 }
 
 }  // namespace
@@ -79,13 +81,12 @@ bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toVi
     return glm::dot(normal, toViewer) >= kLeastFacing && glm::dot(normal, geometricNormal) >= kLeastFacing;
 }
 
-LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const LightDensity& density, const SobolBlock& points, std::uint32_t first,
-                   std::uint32_t count)
+LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count)
 {
     std::vector<Found> found;
     found.reserve(count);
     for (std::uint32_t i = first; i < first + count; ++i)
-        if (std::optional<Found> one = follow(tracer, maps, density, density.draw(points.point(i)))) found.push_back(*one);
+        if (std::optional<Found> one = follow(tracer, maps, guide, guide.density.draw(points.point(i)))) found.push_back(*one);
     // Neighbours side by side: draws that are stratified along the pool are stratified over what is lit.
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.order < b.order; });
 
@@ -97,7 +98,7 @@ LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const LightDe
         append(pool.gx, pool.gy, pool.gz, one.surface.geometricNormal);
         append(pool.nx, pool.ny, pool.nz, one.surface.normal);
         pool.density.push_back(one.density);
-        pool.brightness.push_back(one.point.radiance.x + one.point.radiance.y + one.point.radiance.z);
+        pool.brightness.push_back(one.reach * (one.point.radiance.x + one.point.radiance.y + one.point.radiance.z));
         pool.points.push_back(one.point);
     }
     return pool;

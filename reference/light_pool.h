@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/light_density.h"
+#include "reference/light_guide.h"
 #include "reference/light_map.h"
 #include "reference/tracer.h"
 
@@ -36,7 +36,7 @@ struct LightPool {
     std::vector<float> gx, gy, gz;   ///< unit geometric normal, on the lit side
     std::vector<float> nx, ny, nz;   ///< unit shading normal
     std::vector<float> density;      ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
-    std::vector<float> brightness;   ///< sum of the radiance's channels
+    std::vector<float> brightness;   ///< sum of the radiance's channels, times how likely the point is to be seen
     struct Point {
         SurfaceHit surface;
         Vec3 radiance{0.0f};  ///< diffuse, W/(m^2 sr)
@@ -50,8 +50,7 @@ struct LightPool {
 };
 
 /// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.
-LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const LightDensity& density, const SobolBlock& points, std::uint32_t first,
-                   std::uint32_t count);
+LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count);
 
 /// A shading normal turned away from who looks, or from its own triangle, depends on who looks (evaluateSurface): technique b leaves such points to a.
 bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toViewer);

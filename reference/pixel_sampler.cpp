@@ -9,6 +9,7 @@ namespace {
 constexpr int kGroupBits = 6;
 constexpr int kPointsASampleBits = 4;        // log2 of a pool's points for each sample that a pixel draws from it
 constexpr std::size_t kSpecularStride = 4;   // weighing by a lobe costs as much as several by the cosine
+constexpr int kDrawBits = 1;                 // log2 of the pool's points that a sample looks at
 constexpr float kPoolCandidates = 8.0f;         // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
@@ -27,12 +28,13 @@ TileSampler::TileSampler(const PathTracer& tracer, std::size_t tile, const Block
     forEachPixel(tracer.guide().tiles, tile, [&](std::size_t pixel, std::size_t) {
         specular_ |= primary.covered.texels[pixel] && primary.surface.texels[pixel].specularColor != Vec3(0.0f);
     });
-    if (tracer.guide().useful()) density_ = tracer.guide().densityFor(tile);
+    guide_ = tracer.guide().guideFor(tile);
     const auto technique = [&](const LightDensity& density, float candidates) {
         return LightTechnique{tracer.guide().maps, density.empty() ? nullptr : &density, candidates};
     };
     for (Draws* draws : {&diffuse_, &lobe_, &cone_})
-        draws->light = {technique(density_, kPoolCandidates), technique(tracer.guide().further, kFurtherCandidates), nullptr, &scratch_};
+        draws->light = {technique(guide_.density, kPoolCandidates), technique(tracer.guide().further.density, kFurtherCandidates), nullptr, &scratch_};
+    cone_.light.first = {};  // its rays look where they must
 }
 
 GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
@@ -40,14 +42,14 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     GroupPools pools;
     const RayCounts before = tracer.counts;
     const std::uint32_t group = first >> groupBits_, count = 1u << (groupBits_ + kPointsASampleBits);
-    const auto draw = [&](const LightDensity& density, Purpose purpose) {
-        if (density.empty()) return LightPool{};
-        return drawPool(tracer, tracer_.guide().maps, density, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count);
+    const auto draw = [&](const TileGuide& guide, Purpose purpose) {
+        if (guide.density.empty()) return LightPool{};
+        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count);
     };
-    pools.diffuse = draw(density_, Purpose::diffusePoints);
+    pools.diffuse = draw(guide_, Purpose::diffusePoints);
     pools.furtherDiffuse = draw(tracer_.guide().further, Purpose::furtherDiffusePoints);
     // Their own for the lobe, so that the variances of both parts add up.
-    if (specular_) pools.lobe = draw(density_, Purpose::lobePoints);
+    if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints);
     if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints);
     if (first != group << groupBits_) tracer.counts = before;
     return pools;
@@ -73,18 +75,6 @@ struct LobeResponse {
     }
 };
 
-/// The mean over the cone.
-struct ConeResponse {
-    Vec3 axis;
-    float cosHalf;
-    Response inside() const
-    {
-        const float density = 1.0f / (2.0f * kPi * (1.0f - cosHalf));
-        return {Vec3(density), density};
-    }
-    Response operator()(const Vec3& direction) const { return glm::dot(axis, direction) >= cosHalf ? inside() : Response{}; }
-};
-
 }  // namespace
 
 void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group)
@@ -96,22 +86,20 @@ void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_
     receiver_ = receiverAt(tracer, *surface_);
     diffusePoints_ = key_.points(pixel_, Purpose::diffuseDirection);
     diffuse_.pool = &pools.diffuse;
-    diffuse_.choices = key_.points(pixel_, Purpose::diffusePool);
+    diffuse_.choices = key_.points(pixel_, Purpose::diffusePool, kDrawBits);
     diffuse_.light.furtherPool = pools.furtherDiffuse.size() > 0 ? &pools.furtherDiffuse : nullptr;
     diffuse_.weights.weighDiffuse(pools.diffuse, receiver_, kPoolCandidates);
     if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return;
 
     lobePoints_ = key_.points(pixel_, Purpose::lobeDirection);
-    lobe_.pool = cone_.pool = &pools.lobe;
-    lobe_.choices = key_.points(pixel_, Purpose::lobePool);
+    lobe_.pool = &pools.lobe;
+    lobe_.choices = key_.points(pixel_, Purpose::lobePool, kDrawBits);
     lobe_.light.furtherPool = cone_.light.furtherPool = pools.furtherLobe.size() > 0 ? &pools.furtherLobe : nullptr;
     const float u = key_.points(pixel_, Purpose::lobeSubset).point(group << groupBits_).u;
     const auto start = std::size_t(u * float(kSpecularStride));
     lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, LobeResponse{*surface_, toEye_}, start, kSpecularStride);
     if (channels_ < kConeChannels) return;
     conePoints_ = key_.points(pixel_, Purpose::coneDirection);
-    cone_.choices = key_.points(pixel_, Purpose::conePool);
-    cone_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, ConeResponse{mirrored(toEye_, surface_->normal), cosHalf_});
 }
 
 Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
@@ -136,9 +124,10 @@ Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
     store(sample, kLobe, value);
     if (channels_ < kConeChannels) return sample;
 
-    const ConeResponse cone{mirrored(toEye_, surface_->normal), cosHalf_};
-    const Vec3 inCone = coneDirection(cone.axis, cosHalf_, conePoints_.point(index));
-    store(sample, kCone, traced(tracer, inCone, cone.inside(), cone_.light, Purpose::conePath, index, hit) + connected(tracer, cone_, index, cone));
+    // The mean over the cone: f and p_a are both 1 / its solid angle.
+    const float coneDensity = 1.0f / (2.0f * kPi * (1.0f - cosHalf_));
+    const Vec3 inCone = coneDirection(mirrored(toEye_, surface_->normal), cosHalf_, conePoints_.point(index));
+    store(sample, kCone, traced(tracer, inCone, {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
     return sample;
 }
 
@@ -159,11 +148,14 @@ template <class Respond>
 Vec3 TileSampler::connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const
 {
     if (!draws.weights.any()) return Vec3(0.0f);
-    const Choice chosen = draws.weights.choose(draws.choices.point(index).u);
-    Vec3 direction;
-    const Vec3 response = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, direction);
-    if (response == Vec3(0.0f)) return response;
-    return response * chosen.overDensity * radianceFrom(tracer, *draws.pool, chosen.index, receiver_, direction);
+    Vec3 sum(0.0f);
+    for (std::uint32_t draw = 0; draw < 1u << kDrawBits; ++draw) {
+        const Choice chosen = draws.weights.choose(draws.choices.point(index << kDrawBits | draw).u);
+        Vec3 direction;
+        const Vec3 response = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, direction);
+        if (response != Vec3(0.0f)) sum += response * chosen.overDensity * radianceFrom(tracer, *draws.pool, chosen.index, receiver_, direction);
+    }
+    return sum / float(1u << kDrawBits);
 }
 
 }  // namespace lrsm

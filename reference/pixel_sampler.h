@@ -79,7 +79,7 @@ class TileSampler {
     int channels_, groupBits_;
     bool specular_ = false;
     float cosHalf_;
-    LightDensity density_;
+    TileGuide guide_;
 
     // Of the pixel at hand
     std::uint32_t pixel_ = 0;
