@@ -125,8 +125,8 @@ Vec3 incomingRadiance(Tracer& tracer, const PathStart& start, const PathLight& l
         const Surface surface = evaluateSurface(tracer.scene(), hit->surface, toViewer);
         const LightTechnique& technique = bounce == 1 ? light.first : light.further;
         radiance += throughput * reflectedLight(tracer, surface, toViewer, [&](std::size_t k, const Vec3& toLight) {
-            return technique.shareOfRay(density, k, surface, toViewer, toLight, hit->t);
-        });
+                        return technique.shareOfRay(density, k, surface, toViewer, toLight, hit->t);
+                    });
 
         // By one more reflection, from the lights' side
         const Scattering scattering(surface, toViewer);

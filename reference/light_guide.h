@@ -22,8 +22,8 @@ struct TexelCount {
 
 /// What a tile draws its pools by.
 struct TileGuide {
-    LightDensity density;         ///< q; empty: the tile has no technique b
-    std::vector<float> reach;     ///< [texel]: how likely a point there is to be seen, > 0
+    LightDensity density;      ///< q; empty: the tile has no technique b
+    std::vector<float> reach;  ///< [texel]: how likely a point there is to be seen, > 0
 };
 
 /// Counts of all texels, each spread over its neighbours by a tent of 3 x 3.

@@ -13,20 +13,20 @@ namespace lrsm {
 namespace {
 
 constexpr int kLargestSide = 32, kLeastSide = 4, kMostTexels = 4096;
-constexpr int kPixelsAcross = 4;                       // of a tile, each way
-constexpr int kRayBits = 4, kMostRayBits = 8;          // log2 of the rays of a pixel
-constexpr std::size_t kTilesForFewRays = 64;           // a small picture has more rays a pixel, so that the pilot still sees the scene
-constexpr double kEvenSpread = 0.05;                   // of the variance over the squared mean
+constexpr int kPixelsAcross = 4;               // of a tile, each way
+constexpr int kRayBits = 4, kMostRayBits = 8;  // log2 of the rays of a pixel
+constexpr std::size_t kTilesForFewRays = 64;   // a small picture has more rays a pixel, so that the pilot still sees the scene
+constexpr double kEvenSpread = 0.05;           // of the variance over the squared mean
 constexpr int kPoolBits = 8;
 constexpr std::uint32_t kMeanLight = 16, kMostLight = 1024;  // that a cosine ray counts, as bright as the mean and at the most
-constexpr float kUniformShare = 0.1f;                  // of `base`: rays that the pilot has not found, it may have missed
+constexpr float kUniformShare = 0.1f;                        // of `base`: rays that the pilot has not found, it may have missed
 constexpr std::array<std::uint32_t, 2> kPilotKey = {0x70696c6fu, 0x74000000u};
 
 /// A point of a light that the pilot has looked at.
 struct Finding {
     LightPoint point;
-    float brightness = 0.0f;      ///< that a cosine ray has brought from it
-    std::uint32_t light = 0;      ///< the same in whole numbers
+    float brightness = 0.0f;              ///< that a cosine ray has brought from it
+    std::uint32_t light = 0;              ///< the same in whole numbers
     bool tried = false, reached = false;  ///< one of a pool, and it was seen
 };
 
@@ -96,10 +96,7 @@ class Pilot {
     }
 
   private:
-    static SobolBlock points(std::uint32_t index, Purpose purpose, int bits)
-    {
-        return {philox({index, 0, 0, std::uint32_t(purpose)}, kPilotKey), bits};
-    }
+    static SobolBlock points(std::uint32_t index, Purpose purpose, int bits) { return {philox({index, 0, 0, std::uint32_t(purpose)}, kPilotKey), bits}; }
 
     template <class Body>
     std::vector<Findings> overTiles(const Body& body) const

@@ -14,8 +14,7 @@ void append(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z,
 
 void reserve(LightPool& pool, std::size_t count)
 {
-    for (std::vector<float>* stream :
-         {&pool.x, &pool.y, &pool.z, &pool.gx, &pool.gy, &pool.gz, &pool.nx, &pool.ny, &pool.nz, &pool.density, &pool.brightness})
+    for (std::vector<float>* stream : {&pool.x, &pool.y, &pool.z, &pool.gx, &pool.gy, &pool.gz, &pool.nx, &pool.ny, &pool.nz, &pool.density, &pool.brightness})
         stream->reserve(count);
     pool.points.reserve(count);
 }

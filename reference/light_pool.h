@@ -14,7 +14,8 @@
 ///     a: draw w by its density p_a, trace the ray              share s_a = p_a / (p_a + c p_b)
 ///     b: draw a ray of a light, take the point y it strikes    share s_b = c p_b / (p_a + c p_b)
 ///
-/// p_b is b's density over w. A ray of the light through (u, v) of its square, drawn with density q(u, v) (light_density.h), strikes a surface of normal n at y:
+/// p_b is b's density over w. A ray of the light through (u, v) of its square, drawn with density q(u, v) (light_density.h), strikes a surface of normal n at
+/// y:
 ///
 ///     p_b(w) = q |d(u, v) / dA| <n.l> d^2 / <n.-w>,    d = |y - x|
 ///
@@ -25,18 +26,19 @@
 ///
 ///     estimate = (sum of w) / N * [s_b L f / p_b]_j V_j / w_j
 ///
-/// has the mean (1/N) sum of [s_b L f / p_b]_i V_i over the choice of j, and integral of s_b L f dw over the pool, for any w_j that is positive where light can come.
+/// has the mean (1/N) sum of [s_b L f / p_b]_i V_i over the choice of j, and integral of s_b L f dw over the pool, for any w_j that is positive where light can
+/// come.
 namespace lrsm {
 
 struct LightPool {
     std::size_t drawn = 0;  ///< N: with the rays that found nothing lit
 
     // One entry a lit point. What weighing reads, an array a number:
-    std::vector<float> x, y, z;      ///< position
-    std::vector<float> gx, gy, gz;   ///< unit geometric normal, on the lit side
-    std::vector<float> nx, ny, nz;   ///< unit shading normal
-    std::vector<float> density;      ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
-    std::vector<float> brightness;   ///< sum of the radiance's channels, times how likely the point is to be seen
+    std::vector<float> x, y, z;     ///< position
+    std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
+    std::vector<float> nx, ny, nz;  ///< unit shading normal
+    std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
+    std::vector<float> brightness;  ///< sum of the radiance's channels, times how likely the point is to be seen
     struct Point {
         SurfaceHit surface;
         Vec3 radiance{0.0f};  ///< diffuse, W/(m^2 sr)

@@ -7,10 +7,10 @@ namespace lrsm {
 namespace {
 
 constexpr int kGroupBits = 6;
-constexpr int kPointsASampleBits = 4;        // log2 of a pool's points for each sample that a pixel draws from it
-constexpr std::size_t kSpecularStride = 4;   // weighing by a lobe costs as much as several by the cosine
-constexpr int kDrawBits = 1;                 // log2 of the pool's points that a sample looks at
-constexpr float kPoolCandidates = 8.0f;         // c of the pools' technique
+constexpr int kPointsASampleBits = 4;       // log2 of a pool's points for each sample that a pixel draws from it
+constexpr std::size_t kSpecularStride = 4;  // weighing by a lobe costs as much as several by the cosine
+constexpr int kDrawBits = 1;                // log2 of the pool's points that a sample looks at
+constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
 }  // namespace
@@ -69,10 +69,7 @@ struct CosineResponse {
 struct LobeResponse {
     const Surface& surface;
     Vec3 toEye;
-    Response operator()(const Vec3& direction) const
-    {
-        return {evaluateSpecular(surface, direction, toEye), lobeDensity(surface, toEye, direction)};
-    }
+    Response operator()(const Vec3& direction) const { return {evaluateSpecular(surface, direction, toEye), lobeDensity(surface, toEye, direction)}; }
 };
 
 }  // namespace
@@ -111,8 +108,9 @@ Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
     bool hit = false;
     const CosineResponse cosine{surface_->normal};
     const Vec3 diffuseDirection = cosineDirection(surface_->normal, diffusePoints_.point(index));
-    store(sample, kIrradiance, traced(tracer, diffuseDirection, cosine(diffuseDirection), diffuse_.light, Purpose::diffusePath, index, hit) +
-                                   connected(tracer, diffuse_, index, cosine));
+    store(sample, kIrradiance,
+          traced(tracer, diffuseDirection, cosine(diffuseDirection), diffuse_.light, Purpose::diffusePath, index, hit) +
+              connected(tracer, diffuse_, index, cosine));
     sample[kOpacity] = hit ? 1.0f : 0.0f;
     if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return sample;
 

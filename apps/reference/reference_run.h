@@ -25,6 +25,13 @@ struct TraceOptions {
 /// identity and unit.
 bool traceRange(const PathTracer& tracer, ReferenceState& state, const SampleRange& range, Checkpoint& checkpoint, const TraceOptions& options);
 
+/// RMSE / mean of the irradiance as its stored variance tells it, over what the eye sees; infinite before two blocks are complete.
+double noiseOf(const PathTracer& tracer, const SampleSums& sums);
+
+/// Renders what is left of the state's own range, then whole blocks until that noise is at most `target`: how many samples that takes depends on the picture
+/// alone, not on time, threads or interruptions. False when stopped.
+bool traceToNoise(const PathTracer& tracer, ReferenceState& state, double target, Checkpoint& checkpoint, const TraceOptions& options);
+
 /// frame.json of a finished reference.
 nlohmann::ordered_json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer,
                                      const ReferenceState& state);

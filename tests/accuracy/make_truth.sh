@@ -9,6 +9,6 @@ accuracy=${LRSM_ACCURACY:-build/release/tests/lrsm_accuracy}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for scene in ${*:-$("$lrsm" info --list | cut -d: -f1)}; do
-    "$lrsm" reference "$scene" -o "$work/$scene" --model single --size 96x54 --spp 32768 --block 64
+    "$lrsm" reference "$scene" -o "$work/$scene" --model single --size 96x54 --target-noise 0.004 --block 64
     "$accuracy" --store "$work/$scene/image.exr" "tests/accuracy/truth/$scene.exr"
 done
