@@ -93,7 +93,15 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
         log.run("direct", kPicturePass, [&] { return traceDirect(frame.gbuffer, scene, camera, world.rsms, &world.opacity, needs, settings.direct).radiance; });
 
     // Indirect light, by the chosen method, and the picture.
-    Gathered light = method.gather({scene, camera, needs, settings, frame.gbuffer, world.rsms, world.opacity}, log);
+    Gathered light = method.gather({.scene = scene,
+                                    .camera = camera,
+                                    .needs = needs,
+                                    .settings = settings,
+                                    .gbuffer = frame.gbuffer,
+                                    .rsms = world.rsms,
+                                    .opacity = world.opacity,
+                                    .lanes = options.lanes},
+                                   log);
     finish(frame, camera, std::move(light), log);
     return frame;
 }
@@ -108,7 +116,8 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
     PassLog log(nobody);
     const World world = buildWorld(scene, needs, settings, method.reads, log);
     const GBuffer gbuffer = renderGBuffer(scene, camera, needs, {options.width, options.height});
-    return method.explain({scene, camera, needs, settings, gbuffer, world.rsms, world.opacity}, x, y);
+    return method.explain(
+        {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = gbuffer, .rsms = world.rsms, .opacity = world.opacity}, x, y);
 }
 
 std::vector<MemoryRow> predictMemory(const MemoryQuestion& question)

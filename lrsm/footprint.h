@@ -146,7 +146,12 @@ inline FilteredTexel sampleLayer(const Lrsm& lrsm, int layer, const LrsmFootprin
     const Float4 normal = sampleNormal(texels, footprint);
     if (!(normal[3] > 0.0f)) return {};
     const Float4 radiance = sampleRadiance(texels, footprint);
-    return {Vec3(radiance[0], radiance[1], radiance[2]), Vec3(normal[0], normal[1], normal[2]), normal[3], depth[0], depth[1], depth[2]};
+    return {.radiance = Vec3(radiance[0], radiance[1], radiance[2]),
+            .normal = Vec3(normal[0], normal[1], normal[2]),
+            .normalAlpha = normal[3],
+            .depth = depth[0],
+            .depthSquared = depth[1],
+            .depthAlpha = depth[2]};
 }
 
 }  // namespace lrsm

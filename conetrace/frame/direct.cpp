@@ -112,7 +112,7 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
     assert(settings.shadows != Shadows::hard || rsms.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
     const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
-    const Shadowing shadowing{rsms, opacity, settings, static_cast<float>(tangent(halfAperture))};
+    const Shadowing shadowing{.rsms = rsms, .opacity = opacity, .settings = settings, .tanHalfAperture = static_cast<float>(tangent(halfAperture))};
 
     const std::vector<LightSampler> lights(scene.lights.begin(), scene.lights.end());
 

@@ -98,7 +98,7 @@ std::string explainLrsm(const GatherInput& input, int x, int y)
     for (const Rsm& rsm : input.rsms) lrsms.push_back(buildLrsm(rsm, input.settings.layers));
     const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
-    const ConeWorld world{input.opacity, lrsms, settings, phi};
+    const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     return settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
                                                        : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
 }

@@ -28,7 +28,13 @@ ClipVertex cutEdge(const ClipVolume& volume, int plane, const ClipVertex& in, co
     const double t = dIn / (dIn - dOut);
     const auto mix = [t](double a, double b) { return a + t * (b - a); };
 
-    ClipVertex cut{mix(in.x, out.x), mix(in.y, out.y), mix(in.z, out.z), mix(in.w, out.w), mix(in.b1, out.b1), mix(in.b2, out.b2), 0};
+    ClipVertex cut{.x = mix(in.x, out.x),
+                   .y = mix(in.y, out.y),
+                   .z = mix(in.z, out.z),
+                   .w = mix(in.w, out.w),
+                   .b1 = mix(in.b1, out.b1),
+                   .b2 = mix(in.b2, out.b2),
+                   .outside = 0};
     // Cancellation must not put the new vertex behind the near or the eye's plane.
     cut.z = plane == 0 ? 0.0 : std::max(0.0, cut.z);
     cut.w = std::max(kMinW, cut.w);

@@ -66,7 +66,7 @@ SurfaceHit hitOf(const std::vector<std::uint32_t>& firstTriangle, const Fragment
 {
     const auto next = std::upper_bound(firstTriangle.begin(), firstTriangle.end(), fragment.triangle);
     const auto mesh = static_cast<std::uint32_t>(next - firstTriangle.begin() - 1);
-    return {mesh, fragment.triangle - firstTriangle[mesh], fragment.b1, fragment.b2};
+    return {.mesh = mesh, .triangle = fragment.triangle - firstTriangle[mesh], .b1 = fragment.b1, .b2 = fragment.b2};
 }
 
 Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)

@@ -41,7 +41,7 @@ Fate addPiece(Chunk& chunk, const Viewport& viewport, std::uint32_t triangle, Cu
             std::swap(piece->b2[1], piece->b2[2]);
         }
     }
-    SetupTriangle setup{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}, {a.invW, b.invW, c.invW}, triangle, 0};
+    SetupTriangle setup{.x = {a.x, b.x, c.x}, .y = {a.y, b.y, c.y}, .z = {a.z, b.z, c.z}, .invW = {a.invW, b.invW, c.invW}, .triangle = triangle, .corners = 0};
     if (pixelBounds(setup, viewport).empty()) return Fate::outside;
 
     setup.corners = area < 0 ? kCornersSwapped : kCornersInOrder;
@@ -60,7 +60,8 @@ Fate addClipped(Chunk& chunk, const Viewport& viewport, const RasterInput& input
     polygon.count = 3;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec4& p = input.clipPositions[input.triangles[triangle][k]];
-        polygon.vertices[k] = {p.x, p.y, p.z, p.w, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0, outsideBits(volume, p.x, p.y, p.z, p.w)};
+        polygon.vertices[k] = {
+            .x = p.x, .y = p.y, .z = p.z, .w = p.w, .b1 = k == 1 ? 1.0 : 0.0, .b2 = k == 2 ? 1.0 : 0.0, .outside = outsideBits(volume, p.x, p.y, p.z, p.w)};
     }
     clipPolygon(volume, polygon);
     if (polygon.count == 0) return Fate::outside;

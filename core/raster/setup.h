@@ -59,7 +59,10 @@ inline PixelBounds pixelBounds(const SetupTriangle& t, const Viewport& viewport)
     static_assert(1 << kShift == kSubPixels);
     const auto first = [](const std::array<std::int32_t, 3>& v) { return (std::min(std::min(v[0], v[1]), v[2]) + kHalf - 1) >> kShift; };
     const auto last = [](const std::array<std::int32_t, 3>& v) { return (std::max(std::max(v[0], v[1]), v[2]) - kHalf) >> kShift; };
-    return {std::max(0, first(t.x)), std::max(0, first(t.y)), std::min(viewport.width - 1, last(t.x)), std::min(viewport.height - 1, last(t.y))};
+    return {.x0 = std::max(0, first(t.x)),
+            .y0 = std::max(0, first(t.y)),
+            .x1 = std::min(viewport.width - 1, last(t.x)),
+            .y1 = std::min(viewport.height - 1, last(t.y))};
 }
 
 /// Edge i lies opposite corner i. value(x, y) >= 0 inside (exact, in 1/256 pixel squared), plus `bias` for the top-left rule.

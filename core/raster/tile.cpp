@@ -25,7 +25,7 @@ Fragment resolve(const SetupTriangle& t, const Chunk& chunk, int x, int y, float
     const double scale = 1.0 / (q[0] + q[1] + q[2]);
     const double c1 = q[1] * scale, c2 = q[2] * scale;
 
-    Fragment fragment{t.triangle, float(c1), float(c2), depth};
+    Fragment fragment{.triangle = t.triangle, .b1 = float(c1), .b2 = float(c2), .depth = depth};
     if (t.corners == kCornersSwapped) {
         std::swap(fragment.b1, fragment.b2);
     } else if (t.corners >= kCornersClipped) {
@@ -131,7 +131,10 @@ void drawTriangle(TileBuffers& buffers, const Chunk& chunk, std::uint32_t chunkI
 {
     const SetupTriangle& triangle = chunk.setup[item];
     PixelBounds box = pixelBounds(triangle, viewport);
-    box = {std::max(box.x0, tileBounds.x0), std::max(box.y0, tileBounds.y0), std::min(box.x1, tileBounds.x1), std::min(box.y1, tileBounds.y1)};
+    box = {.x0 = std::max(box.x0, tileBounds.x0),
+           .y0 = std::max(box.y0, tileBounds.y0),
+           .x1 = std::min(box.x1, tileBounds.x1),
+           .y1 = std::min(box.y1, tileBounds.y1)};
     const TriangleInTile inTile(triangle, box);
     if (inTile.empty()) return;
     inTile.draw([&](int x, int y, float depth) {
@@ -152,8 +155,10 @@ void drawTile(const std::vector<Chunk>& chunks, const Viewport& viewport, int ti
     TileBuffers buffers;
     buffers.x0 = tile % viewport.tilesX() * kTileSize;
     buffers.y0 = tile / viewport.tilesX() * kTileSize;
-    const PixelBounds bounds{buffers.x0, buffers.y0, std::min(buffers.x0 + kTileSize, viewport.width) - 1,
-                             std::min(buffers.y0 + kTileSize, viewport.height) - 1};
+    const PixelBounds bounds{.x0 = buffers.x0,
+                             .y0 = buffers.y0,
+                             .x1 = std::min(buffers.x0 + kTileSize, viewport.width) - 1,
+                             .y1 = std::min(buffers.y0 + kTileSize, viewport.height) - 1};
     // No far clip: any finite depth is nearer than nothing.
     std::fill(std::begin(buffers.depth), std::end(buffers.depth), std::numeric_limits<float>::infinity());
 

@@ -56,7 +56,11 @@ std::string comparisonPage(const Comparison& comparison)
     for (const ComparedLayer& layer : comparison.layers) body += sectionHtml(layer);
     if (!comparison.settings.empty()) body += headingHtml("Settings");
     for (const auto& [heading, text] : comparison.settings) body += foldedHtml(heading, preformattedHtml(text), true);
-    return htmlPage({comparison.title, comparison.summary, body, std::string(kComparisonStyle), std::string(kComparisonScript)});
+    return htmlPage({.title = comparison.title,
+                     .summary = comparison.summary,
+                     .bodyHtml = body,
+                     .style = std::string(kComparisonStyle),
+                     .script = std::string(kComparisonScript)});
 }
 
 }  // namespace lrsm

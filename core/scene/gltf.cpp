@@ -28,7 +28,8 @@ Image<Rgba8> toRgba8(const tinygltf::Image& decoded)
         const unsigned value = decoded.image[2 * i] | unsigned(decoded.image[2 * i + 1]) << 8;
         return static_cast<unsigned char>((value * 255u + 32767u) / 65535u);
     };
-    for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = {channel(4 * i), channel(4 * i + 1), channel(4 * i + 2), channel(4 * i + 3)};
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+        image.texels[i] = {.r = channel(4 * i), .g = channel(4 * i + 1), .b = channel(4 * i + 2), .a = channel(4 * i + 3)};
     return image;
 }
 

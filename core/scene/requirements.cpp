@@ -9,7 +9,7 @@ Requirements analyseRequirements(const Scene& scene, const ForceSettings& force)
     if (force.everything) return {};
 
     // Only what a triangle uses counts: a file may list materials that nothing wears.
-    Requirements need{false, false, false, false, false, {}};
+    Requirements need{.specular = false, .alphaTest = false, .normalMaps = false, .textures = false, .vertexColors = false, .leftOut = {}};
     for (const Mesh& mesh : scene.meshes) {
         if (mesh.triangles.empty()) continue;
         const Material& material = scene.materials[std::size_t(mesh.material)];
