@@ -1,6 +1,7 @@
 #include "apps/common/commands.h"
 #include "core/base/errors.h"
 #include "core/base/float_state.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <csignal>
@@ -23,12 +24,9 @@ int report(const std::string& message, int code)
 /// CLI11 would only say that a command is missing.
 void refuseUnknownCommand(const CLI::App& program, const char* word)
 {
-    std::string known;
-    for (const CLI::App* command : program.get_subcommands({})) {
-        if (command->get_name() == word) return;
-        known += (known.empty() ? "" : ", ") + command->get_name();
-    }
-    throw lrsm::InputError("there is no command \"" + std::string(word) + "\"", "the commands are " + known);
+    const std::vector<const CLI::App*> commands = program.get_subcommands({});
+    if (std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) { return command->get_name() == word; })) return;
+    throw lrsm::InputError("there is no command \"" + std::string(word) + "\"", "the commands are " + lrsm::joined(commands, &CLI::App::get_name));
 }
 
 int runChosen(const std::vector<lrsm::Command>& commands)

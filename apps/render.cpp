@@ -28,14 +28,6 @@ struct RenderArguments : CommonOptions {
     int lanes = 0;
 };
 
-std::optional<float> chosenExposure(const std::string& text)
-{
-    if (text == "auto") return {};
-    float stops = 0.0f;
-    if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f)) throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
-    return stops;
-}
-
 GatherMethod chosenMethod(const RenderArguments& options)
 {
     if (options.visibility != "voxel" && options.visibility != "exact") throw InputError("--visibility " + options.visibility, "must be voxel or exact");
@@ -63,7 +55,7 @@ int runRender(const RenderArguments& options)
     if (options.output.empty() && options.pixel.empty()) throw InputError("render", "needs -o FOLDER (or --pixel x,y)");
     const Settings settings = chosenSettings(options);
     const IVec2 size = chosenSize(options);
-    const std::optional<float> exposure = chosenExposure(options.exposure);
+    const std::optional<float> exposure = parseExposure(options.exposure);
     if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
     RenderOptions renderOptions{.width = size.x, .height = size.y, .lanes = options.lanes, .watch = {}, .method = chosenMethod(options)};
     std::optional<IVec2> pixel;

@@ -6,12 +6,12 @@
 #include "apps/common/progress.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -52,35 +52,6 @@ void refuseEarly(const ScalingBase& base, const std::vector<std::string>& names)
         if (std::find(scalingAxisNames().begin(), scalingAxisNames().end(), name) == scalingAxisNames().end()) makeScalingAxis(name, base);
 }
 
-/// Rows as they come, so that an interrupted run leaves what it measured. A frame with passes that none had before widens the table.
-class RowFile {
-  public:
-    explicit RowFile(const std::string& path) : path_(path) {}
-    void add(const ScalingAxis& axis, const ScalingSample& sample)
-    {
-        std::vector<std::string> series = series_;
-        for (const std::string& name : seriesNames({sample}))
-            if (std::find(series.begin(), series.end(), name) == series.end()) series.push_back(name);
-        rows_.emplace_back(axis, sample);
-        if (series == series_) return write(benchCsvRow(axis, sample, series_));
-        series_ = std::move(series);
-        file_ = std::ofstream(path_, std::ios::binary | std::ios::trunc);
-        write(benchCsvHead(series_));
-        for (const auto& [ofAxis, row] : rows_) write(benchCsvRow(ofAxis, row, series_));
-    }
-
-  private:
-    void write(const std::string& line)
-    {
-        if (!file_.write(line.data(), static_cast<std::streamsize>(line.size())).flush()) throw MachineError(path_, "cannot be written");
-    }
-
-    std::string path_;
-    std::ofstream file_;
-    std::vector<std::string> series_;
-    std::vector<std::pair<std::reference_wrapper<const ScalingAxis>, ScalingSample>> rows_;
-};
-
 /// Says how long the rest of an axis takes, by the frames so far.
 class TimeLeft {
   public:
@@ -94,13 +65,6 @@ class TimeLeft {
   private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
-
-void writeSummary(const std::string& folder, const std::vector<MeasuredAxis>& axes, const nlohmann::ordered_json& machine, int repeat)
-{
-    const auto write = [&](const char* name, const std::string& text) { writeFileWhole(folder + "/" + name, std::as_bytes(std::span(text))); };
-    write("bench.json", jsonText(benchJson(axes, machine, repeat)));
-    write("bench.html", benchPage(axes, machine, repeat));
-}
 
 void printAxis(const MeasuredAxis& measured)
 {
@@ -118,7 +82,8 @@ int runBench(const BenchArguments& options)
         OutputFolder probe(options.output);
     }
     std::filesystem::create_directories(options.output);
-    RowFile rows(options.output + "/bench.csv");
+    const auto write = [&](const char* name, const std::string& text) { writeFileWhole(options.output + "/" + name, std::as_bytes(std::span(text))); };
+    std::vector<BenchRow> rows;
     const nlohmann::ordered_json machine = machineJson();
     Progress progress(options.quiet);
     std::vector<MeasuredAxis> measured;
@@ -127,15 +92,20 @@ int runBench(const BenchArguments& options)
         progress.show(name, 0.0);
         ScalingAxis axis = makeScalingAxis(name, base);
         const TimeLeft left;
-        const ScalingWatch watch = {[&](const ScalingSample& sample) { rows.add(axis, sample); },
-                                    [&](const std::string& what, double fraction) { progress.show(what + left.at(fraction), fraction); },
+        // Rows as they come, so that an interrupted run leaves what it measured.
+        const auto keep = [&](const ScalingSample& sample) {
+            rows.push_back(benchRow(axis, sample));
+            write("bench.csv", csvTable(benchTable(rows)));
+        };
+        const ScalingWatch watch = {keep, [&](const std::string& what, double fraction) { progress.show(what + left.at(fraction), fraction); },
                                     [&] { return catching.asked().load(); }};
         const ScalingRun run = runScaling(axis, options.repeat, watch);
         ScalingResult result = summarizeScaling(axis, run.samples);
         for (ScalingPoint& point : axis.points) point.scene.reset();  // millions of triangles
         measured.push_back({std::move(axis), std::move(result), run.leftOut});
         progress.clear();
-        writeSummary(options.output, measured, machine, options.repeat);
+        write("bench.json", jsonText(benchJson(measured, machine, options.repeat)));
+        write("bench.html", benchPage(measured, machine, options.repeat));
         if (!options.quiet && !options.json) printAxis(measured.back());
         if (catching.asked()) {
             std::cerr << "lrsm: interrupted; what was measured is in " << options.output << std::endl;
@@ -157,9 +127,7 @@ Command addBench(CLI::App& program)
     const auto options = std::make_shared<BenchArguments>();
     options->size.clear();
     options->scene = "atrium";
-    std::string names;
-    for (const std::string& name : scalingAxisNames()) names += (names.empty() ? "" : ", ") + name;
-    parser->add_option("AXIS", options->axes, "what grows, in this order; all without: " + names);
+    parser->add_option("AXIS", options->axes, "what grows, in this order; all without: " + joined(scalingAxisNames()));
     parser->add_option("-o,--output", options->output, "folder for bench.csv (a line a frame, as they come), bench.json and bench.html (after each axis)")
         ->required();
     parser->add_option("--scene", options->scene, "a .gltf, .glb or view .json file, or a built-in scene (lrsm info --list)")->capture_default_str();

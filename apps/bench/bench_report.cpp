@@ -5,7 +5,6 @@
 #include "core/report/html.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,13 +14,6 @@ namespace lrsm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string fixedNumber(double value, int digits)
-{
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
 
 std::string valueOfCpuinfo(const std::string& key)
 {
@@ -60,9 +52,9 @@ Chart scalingChart(const MeasuredAxis& measured)
 {
     Chart chart{.title = measured.axis.name, .xLabel = measured.axis.xLabel, .yLabel = "ms (median)", .logX = true, .logY = true, .series = {}};
     for (const ScalingCurve* curve : shownTimes(measured)) {
-        ChartSeries series{.label = curve->series + (curve->slope ? " ~ x^" + fixedNumber(*curve->slope, 2) : ""), .x = measured.result.x, .y = curve->median};
+        ChartSeries series{.label = curve->series + (curve->slope ? " ~ x^" + fixedNumber(2, *curve->slope) : ""), .x = measured.result.x, .y = curve->median};
         for (std::size_t i = 0; i < measured.result.points.size(); ++i)
-            series.hover.push_back(measured.axis.points[measured.result.points[i]].label + ", spread " + fixedNumber(100.0 * curve->spread[i], 0) + " %");
+            series.hover.push_back(measured.axis.points[measured.result.points[i]].label + ", spread " + fixedNumber(0, 100.0 * curve->spread[i]) + " %");
         chart.series.push_back(std::move(series));
     }
     return chart;
@@ -99,21 +91,27 @@ nlohmann::ordered_json machineJson()
     return machine;
 }
 
-std::string benchCsvHead(const std::vector<std::string>& series)
-{
-    std::string head = "axis,x,label,repeat,width,height,threads";
-    for (const std::string& name : series) head += "," + name;
-    return head + "\n";
-}
-
-std::string benchCsvRow(const ScalingAxis& axis, const ScalingSample& sample, const std::vector<std::string>& series)
+BenchRow benchRow(const ScalingAxis& axis, const ScalingSample& sample)
 {
     const ScalingPoint& point = axis.points[sample.point];
     const double x = axis.xSeries.empty() ? point.x : counterSum(sample.values, axis.xSeries);
-    std::string row = axis.name + "," + exactNumber(x) + "," + point.label + "," + std::to_string(sample.repeat) + "," + std::to_string(point.width) + "," +
-                      std::to_string(point.height) + "," + std::to_string(point.threads);
-    for (const std::string& name : series) row += "," + exactNumber(counterSum(sample.values, name));
-    return row + "\n";
+    return {{axis.name, exactNumber(x), point.label, std::to_string(sample.repeat), std::to_string(point.width), std::to_string(point.height),
+             std::to_string(point.threads)},
+            sample};
+}
+
+ReportTable benchTable(const std::vector<BenchRow>& rows)
+{
+    std::vector<ScalingSample> samples;
+    for (const BenchRow& row : rows) samples.push_back(row.sample);
+    const std::vector<std::string> series = seriesNames(samples);
+    ReportTable table{"", {"axis", "x", "label", "repeat", "width", "height", "threads"}, {}};
+    table.head.insert(table.head.end(), series.begin(), series.end());
+    for (const BenchRow& row : rows) {
+        table.rows.push_back(row.place);
+        for (const std::string& name : series) table.rows.back().push_back(exactNumber(counterSum(row.sample.values, name)));
+    }
+    return table;
 }
 
 ReportTable pointTable(const MeasuredAxis& measured)
@@ -128,11 +126,11 @@ ReportTable pointTable(const MeasuredAxis& measured)
     for (std::size_t i = 0; i < measured.result.points.size(); ++i) {
         std::vector<std::string> row = {measured.axis.points[measured.result.points[i]].label};
         for (const ScalingCurve* curve : curves) row.push_back(shortNumber(curve->median[i]));
-        row.push_back(fixedNumber(100.0 * curves.front()->spread[i], 0));
+        row.push_back(fixedNumber(0, 100.0 * curves.front()->spread[i]));
         table.rows.push_back(std::move(row));
     }
     std::vector<std::string> slopes = {"grows as x to the"};
-    for (const ScalingCurve* curve : curves) slopes.push_back(curve->slope ? fixedNumber(*curve->slope, 2) : "");
+    for (const ScalingCurve* curve : curves) slopes.push_back(curve->slope ? fixedNumber(2, *curve->slope) : "");
     table.rows.push_back(std::move(slopes));
     return table;
 }
@@ -149,7 +147,7 @@ std::string benchPage(const std::vector<MeasuredAxis>& axes, const nlohmann::ord
 {
     HtmlPage page{"lrsm bench: how cost grows", "", "", chartStyle(), chartScript()};
     page.summary = machine["processor"].get<std::string>() + ", " + machine["compiler"].get<std::string>() + ", load average " +
-                   (machine["load"].is_array() ? fixedNumber(machine["load"][0].get<double>(), 1) : "unknown") + " before; medians of " +
+                   (machine["load"].is_array() ? fixedNumber(1, machine["load"][0].get<double>()) : "unknown") + " before; medians of " +
                    std::to_string(repeat) + ". _cpu_ms is processor time of all threads, _ms wall time; x^p: least squares of the logarithms.";
     for (const MeasuredAxis& measured : axes) {
         page.bodyHtml += headingHtml(measured.axis.name) + paragraphHtml("Fixed: " + measured.axis.fixed + ".") + chartHtml(scalingChart(measured));

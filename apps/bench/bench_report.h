@@ -20,9 +20,14 @@ struct MeasuredAxis {
 /// The machine that measured: processor, cores, compiler, load average (1, 5, 15 minutes).
 nlohmann::ordered_json machineJson();
 
-/// Columns of bench.csv: axis, x, label, repeat, width, height, threads, then every series. One line a frame, newline included.
-std::string benchCsvHead(const std::vector<std::string>& series);
-std::string benchCsvRow(const ScalingAxis& axis, const ScalingSample& sample, const std::vector<std::string>& series);
+/// One frame of bench.csv: its place on the axis, and what was measured.
+struct BenchRow {
+    std::vector<std::string> place;  ///< axis, x, label, repeat, width, height, threads
+    ScalingSample sample;
+};
+BenchRow benchRow(const ScalingAxis& axis, const ScalingSample& sample);
+/// Every series of any row is a column.
+ReportTable benchTable(const std::vector<BenchRow>& rows);
 
 /// Median times of a frame and its largest passes, and the work, a row a point; last, the power of x that each grows with.
 ReportTable pointTable(const MeasuredAxis& measured);

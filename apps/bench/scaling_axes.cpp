@@ -2,6 +2,7 @@
 
 #include "apps/bench/scaling_scenes.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -143,11 +144,7 @@ ScalingAxis makeScalingAxis(const std::string& name, const ScalingBase& base)
 {
     const std::vector<AxisRecipe>& recipes = axisRecipes();
     const auto recipe = std::find_if(recipes.begin(), recipes.end(), [&](const AxisRecipe& one) { return one.name == name; });
-    if (recipe == recipes.end()) {
-        std::string known;
-        for (const AxisRecipe& one : recipes) known += (known.empty() ? "" : ", ") + one.name;
-        throw InputError("axis \"" + name + "\"", "there is none of this name; the axes are " + known);
-    }
+    if (recipe == recipes.end()) throw InputError("axis \"" + name + "\"", "there is none of this name; the axes are " + joined(scalingAxisNames()));
     const IVec2 size = base.size.value_or(base.quick ? IVec2(32, 18) : IVec2(recipe->width, recipe->height));
     ScalingPoint same{.x = 0.0,
                       .label = {},

@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/formats.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <array>
@@ -22,9 +23,7 @@ Enum byName(const std::array<std::string_view, n>& names, std::string_view name,
 {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<Enum>(found - names.begin());
-    std::string known;
-    for (const std::string_view each : names) known += (known.empty() ? "" : ", ") + std::string(each);
-    throw InputError(place, "\"" + std::string(name) + "\" is none of " + known);
+    throw InputError(place, "\"" + std::string(name) + "\" is none of " + joined(names));
 }
 
 /// A buffer's extents as a texture has them.
@@ -72,20 +71,6 @@ void expandBits(const Buffer& buffer, const TextureShape& shape, std::span<std::
             const auto byte = static_cast<unsigned>(buffer.bytes[row * rowBytes + x / 8]);
             level[row * shape.width + x] = std::byte((byte >> (x & 7)) & 1u ? 255 : 0);
         }
-}
-
-void packBits(const Buffer& description, const TextureShape& shape, std::span<const std::byte> level, std::vector<std::byte>& bytes)
-{
-    const std::size_t rowBytes = description.shape[2];
-    for (std::size_t row = 0; row < std::size_t(shape.depth) * shape.height; ++row)
-        for (std::size_t x = 0; x < shape.width; ++x)
-            if (level[row * shape.width + x] != std::byte{0}) bytes[row * rowBytes + x / 8] |= std::byte(1u << (x & 7));
-}
-
-std::string extentsText(std::uint32_t layers, std::uint32_t depth, std::uint32_t height, std::uint32_t width)
-{
-    return std::to_string(width) + "x" + std::to_string(height) + (depth > 1 ? "x" + std::to_string(depth) : "") +
-           (layers > 1 ? ", " + std::to_string(layers) + " layers" : "");
 }
 
 }  // namespace
@@ -185,35 +170,6 @@ void fillTexture(NamedTexture& named, const std::vector<Buffer>& buffers)
                 copyTexels(buffer, shape, layer, texture.level(layer, buffer.dds->mip));
         }
     }
-}
-
-std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsTexture& texture, const std::string& place)
-{
-    assert(description.dds);
-    const DdsPlace& dds = *description.dds;
-    const TextureShape shape = textureShapeOf(description);
-    if (texture.format != dds.format)
-        throw InputError(place, "is " + std::string(nameOf(texture.format)) + " where " + description.name + " is " + std::string(nameOf(dds.format)));
-    if (dds.mip >= texture.mips)
-        throw InputError(place, "has " + std::to_string(texture.mips) + " mips; " + description.name + " is mip " + std::to_string(dds.mip));
-    const auto extent = [&](std::uint32_t n) { return std::max(1u, n >> dds.mip); };
-    if (texture.volume != dds.volume || texture.layers != shape.layers || extent(texture.width) != shape.width || extent(texture.height) != shape.height ||
-        extent(texture.depth) != shape.depth)
-        throw InputError(place, "is " + extentsText(texture.layers, extent(texture.depth), extent(texture.height), extent(texture.width)) + " at mip " +
-                                    std::to_string(dds.mip) + " where " + description.name + " is " +
-                                    extentsText(shape.layers, shape.depth, shape.height, shape.width));
-
-    std::vector<std::byte> bytes(description.elements() * sizeOf(description.dtype));
-    if (description.encoding == Encoding::bits) {
-        packBits(description, shape, texture.level(0, dds.mip), bytes);
-        return bytes;
-    }
-    const std::size_t count = shape.texels() / shape.layers, fromStride = bytesPerTexel(texture.format), toStride = shape.channels * shape.elementBytes;
-    for (std::uint32_t layer = 0; layer < shape.layers; ++layer) {
-        const std::span<const std::byte> level = texture.level(layer, dds.mip);
-        for (std::size_t i = 0; i < count; ++i) std::memcpy(bytes.data() + (layer * count + i) * toStride, level.data() + i * fromStride, toStride);
-    }
-    return bytes;
 }
 
 }  // namespace lrsm

@@ -94,8 +94,4 @@ std::vector<NamedTexture> texturesOf(const std::vector<Buffer>& buffers);
 /// Fills in the texels: channels that a buffer does not have are 0, bits become 0 and 255.
 void fillTexture(NamedTexture& texture, const std::vector<Buffer>& buffers);
 
-/// The bytes that a buffer of this description has in `texture`; the inverse of fillTexture. InputError at `place` where extents, mip, layers or
-/// format do not fit the description.
-std::vector<std::byte> bytesFromTexture(const Buffer& description, const DdsTexture& texture, const std::string& place);
-
 }  // namespace lrsm

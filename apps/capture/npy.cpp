@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <array>
@@ -157,12 +158,15 @@ std::size_t elementCount(const std::vector<std::size_t>& shape, const std::strin
     return count;
 }
 
+std::string shapeText(const std::vector<std::size_t>& shape)
+{
+    return "(" + joined(shape, [](std::size_t extent) { return std::to_string(extent); }) + (shape.size() == 1 ? ",)" : ")");
+}
+
 std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape)
 {
-    std::string tuple;
-    for (const std::size_t extent : shape) tuple += (tuple.empty() ? "" : ", ") + std::to_string(extent);
-    if (shape.size() == 1) tuple += ',';  // Python's tuple of one
-    std::string text = "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) + "', 'fortran_order': False, 'shape': (" + tuple + "), }";
+    std::string text =
+        "{'descr': '" + std::string(kDtypes[static_cast<std::size_t>(dtype)].descr) + "', 'fortran_order': False, 'shape': " + shapeText(shape) + ", }";
     // Blanks and a newline bring the data to a multiple of 64.
     text.append((kAlignment - (kPreamble + text.size() + 1) % kAlignment) % kAlignment, ' ');
     text += '\n';

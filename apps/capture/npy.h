@@ -29,6 +29,9 @@ struct NpyArray {
 /// Product of the extents; 1 for none. InputError at `place` where it (times 8 bytes) overflows.
 std::size_t elementCount(const std::vector<std::size_t>& shape, const std::string& place);
 
+/// As Python writes it: "(2, 3)", "(2,)".
+std::string shapeText(const std::vector<std::size_t>& shape);
+
 /// What stands before the data.
 std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape);
 

@@ -15,13 +15,6 @@ namespace {
 
 constexpr std::size_t kAbsent = ~std::size_t(0);
 
-std::string shapeText(const std::vector<std::size_t>& shape)
-{
-    std::string text;
-    for (const std::size_t extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
-    return "(" + text + (shape.size() == 1 ? ",)" : ")");
-}
-
 std::vector<std::size_t> withoutOnes(std::vector<std::size_t> shape)
 {
     std::erase(shape, std::size_t(1));

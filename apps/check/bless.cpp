@@ -1,6 +1,7 @@
 #include "apps/check/bless.h"
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -22,10 +23,8 @@ void refuseOtherFrames(const Capture& golden, const Capture& candidate)
     if (golden.width != candidate.width || golden.height != candidate.height)
         refuse("the candidate is " + std::to_string(candidate.width) + "x" + std::to_string(candidate.height) + ", the golden " + std::to_string(golden.width) +
                "x" + std::to_string(golden.height));
-    std::string settings;
-    for (const SettingDifference& d : differences(golden.settings, candidate.settings))
-        settings += (settings.empty() ? "" : ", ") + d.key + "=" + d.b + " (golden " + d.a + ")";
-    if (!settings.empty()) refuse("the candidate has other settings: " + settings);
+    if (const std::vector<SettingDifference> others = differences(golden.settings, candidate.settings); !others.empty())
+        refuse("the candidate has other settings: " + joined(others, [](const SettingDifference& d) { return d.key + "=" + d.b + " (golden " + d.a + ")"; }));
 }
 
 void refuseOtherBuffers(const Capture& golden, const Capture& candidate)

@@ -7,6 +7,7 @@
 #include "apps/check/compare.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/imageio/image_io.h"
 #include "core/settings/settings_table.h"
 
@@ -212,30 +213,13 @@ class CandidateReader {
     std::map<std::string, LayeredImage> pictures_;
 };
 
-/// Edits that turn one word into the other.
-std::size_t distanceOf(const std::string& a, const std::string& b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-        }
-    }
-    return row.back();
-}
-
 std::string unusedNote(const std::string& file, const Capture& golden)
 {
     const std::string stem = fs::path(file).stem().string();
     std::string nearest;
     std::size_t least = std::max<std::size_t>(stem.size() / 3, 2);
     for (const Buffer& buffer : golden.buffers)
-        if (const std::size_t distance = distanceOf(stem, buffer.name); distance <= least && distance > 0) {
+        if (const std::size_t distance = editDistance(stem, buffer.name); distance <= least && distance > 0) {
             least = distance - 1;
             nearest = buffer.name;
         }

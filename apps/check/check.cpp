@@ -3,6 +3,7 @@
 #include "apps/capture/passes.h"
 #include "apps/check/hints.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,15 +21,11 @@ std::size_t passIndex(const Capture& golden, const std::string& pass)
 void refuseUnknownPasses(const Capture& golden, const std::vector<std::string>& passes)
 {
     for (const std::string& asked : passes) {
-        std::string known;
-        bool found = false;
-        std::string last;
-        for (const Buffer& buffer : golden.buffers) {
-            found = found || isAskedFor({asked}, buffer.pass);
-            if (buffer.pass != last) known += (known.empty() ? "" : ", ") + buffer.pass;
-            last = buffer.pass;
-        }
-        if (!found) throw InputError("--only " + asked, "the golden has no buffers of such a pass; it has " + known);
+        std::vector<std::string> known;
+        for (const Buffer& buffer : golden.buffers)
+            if (known.empty() || known.back() != buffer.pass) known.push_back(buffer.pass);
+        if (std::none_of(known.begin(), known.end(), [&](const std::string& pass) { return isAskedFor({asked}, pass); }))
+            throw InputError("--only " + asked, "the golden has no buffers of such a pass; it has " + joined(known));
     }
 }
 
@@ -129,15 +126,15 @@ void addHints(const Capture& inputs, std::vector<CheckedBuffer>& buffers)
 
 }  // namespace
 
-std::string_view nameOf(Verdict verdict)
+VerdictName nameOf(Verdict verdict)
 {
     switch (verdict) {
-    case Verdict::ok: return "ok";
-    case Verdict::wrong: return "WRONG";
-    case Verdict::inherits: return "inherits";
+    case Verdict::ok: return {"ok", "ok"};
+    case Verdict::wrong: return {"WRONG", "wrong"};
+    case Verdict::inherits: return {"inherits", "inherits"};
     case Verdict::missing: break;
     }
-    return "not in candidate";
+    return {"not in candidate", "not_in_candidate"};
 }
 
 const CheckedBuffer* CheckReport::firstWrong() const

@@ -14,7 +14,11 @@ enum class Verdict {
     inherits,  ///< differs from the golden, but is what our pass makes of the candidate's inputs: look upstream
     missing,   ///< not in the candidate
 };
-std::string_view nameOf(Verdict verdict);  ///< "ok", "WRONG", "inherits", "not in candidate"
+/// For people, and in files: "not in candidate", "not_in_candidate".
+struct VerdictName {
+    std::string_view text, key;
+};
+VerdictName nameOf(Verdict verdict);
 
 struct CheckedBuffer {
     const Buffer* golden = nullptr;

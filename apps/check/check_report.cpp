@@ -33,7 +33,7 @@ std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
 {
     const BufferComparison& c = b.comparison();
     const std::string mark = b.verdict == Verdict::wrong ? "!" : "";
-    if (b.verdict == Verdict::missing) return {b.golden->pass, name, "", "", "", "", "", std::string(nameOf(b.verdict))};
+    if (b.verdict == Verdict::missing) return {b.golden->pass, name, "", "", "", "", "", std::string(nameOf(b.verdict).text)};
     const std::string where = c.worst ? placeText(*b.golden, c.worst->element) : "";
     return {mark + b.golden->pass,
             name,
@@ -42,7 +42,7 @@ std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
             shortShare(c.outside, c.live),
             c.worst ? sizeText(*b.golden, c.worst->size) : "0",
             where,
-            std::string(nameOf(b.verdict))};
+            std::string(nameOf(b.verdict).text)};
 }
 
 ReportTable tableOf(const CheckReport& report)
@@ -90,17 +90,6 @@ Json comparisonJson(const Buffer& buffer, const BufferComparison& c)
     if (c.first) json["first"] = differenceJson(buffer, *c.first);
     if (c.worst) json["worst"] = differenceJson(buffer, *c.worst);
     return json;
-}
-
-std::string_view verdictKey(Verdict verdict)
-{
-    switch (verdict) {
-    case Verdict::ok: return "ok";
-    case Verdict::wrong: return "wrong";
-    case Verdict::inherits: return "inherits";
-    case Verdict::missing: break;
-    }
-    return "not_in_candidate";
 }
 
 /// XML 1.0 has no place for control characters, escaped or not.
@@ -156,7 +145,7 @@ Json checkJson(const CheckReport& report)
     Json json = {{"summary", report.summary()}, {"holds", report.holds()}, {"notes", report.notes}, {"buffers", Json::array()}};
     for (const CheckedBuffer& b : report.buffers) {
         Json entry = {
-            {"pass", b.golden->pass}, {"name", b.golden->name}, {"verdict", verdictKey(b.verdict)}, {"tolerance", toleranceText(b.golden->tolerance)}};
+            {"pass", b.golden->pass}, {"name", b.golden->name}, {"verdict", nameOf(b.verdict).key}, {"tolerance", toleranceText(b.golden->tolerance)}};
         if (b.candidate) {
             entry["file"] = b.candidate->file;
             if (!b.candidate->note.empty()) entry["read_as"] = b.candidate->note;

@@ -4,7 +4,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 namespace lrsm {
@@ -247,13 +246,6 @@ BufferComparison compareBuffers(const Buffer& golden, const Buffer& candidate, s
     if (firstOutside) all.first = firstOutside;
     judge(all, golden.tolerance);
     return all;
-}
-
-std::string numberText(int digits, double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
 }
 
 std::string sizeText(const Buffer& golden, double size)

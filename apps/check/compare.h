@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/capture/buffer.h"
+#include "core/report/table.h"
 
 #include <optional>
 
@@ -46,8 +47,6 @@ struct BufferComparison {
 /// one an element: differences are measured with them.
 BufferComparison compareBuffers(const Buffer& golden, const Buffer& candidate, std::span<const double> given = {});
 
-/// So many significant digits at the most.
-std::string numberText(int digits, double value);
 /// "exact", "1 ULP", "0.001", "2 % of max(|golden|, 0.01)", and the fraction of outliers.
 std::string toleranceText(const Tolerance& tolerance);
 /// "13 ULP", "2.1e-4", "4.1 %": a difference's size with its unit.

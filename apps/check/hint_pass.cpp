@@ -3,6 +3,7 @@
 #include "apps/capture/passes.h"
 #include "apps/check/hint_trial.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -14,17 +15,6 @@ namespace {
 
 constexpr std::size_t kPixels = 4096;         ///< traced for each suspicion about the cones
 constexpr std::size_t kMostTexels = 1 << 22;  ///< passes with larger outputs are not tried once a setting
-
-std::vector<std::string> split(const std::string& text, const std::string& by)
-{
-    std::vector<std::string> parts;
-    for (std::size_t at = 0; at <= text.size();) {
-        const std::size_t end = std::min(text.find(by, at), text.size());
-        parts.push_back(text.substr(at, end - at));
-        at = end + by.size();
-    }
-    return parts;
-}
 
 /// Numbers that programs choose differently. Relative to what is set: "*2", "+1".
 struct NumericTry {

@@ -43,7 +43,6 @@ class HintTrial {
         return std::abs(predicted - c) <= slack_ * std::max(std::abs(predicted), floor_);
     }
     bool wrong(std::size_t i) const { return compared(expected(), i) && !fits(expectedAt(i), i); }
-    std::size_t wrongCount() const { return wrongCount_; }
 
     /// Tests `predict(i)` on the sample, and if that looks well on all elements. NaN: no prediction, taken as what is expected.
     template <class Predict>

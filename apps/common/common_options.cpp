@@ -127,6 +127,14 @@ IVec2 chosenSize(const CommonOptions& options)
     return size;
 }
 
+std::optional<float> parseExposure(const std::string& text)
+{
+    if (text == "auto") return {};
+    float stops = 0.0f;
+    if (!CLI::detail::lexical_cast(text, stops) || !(std::abs(stops) <= 100.0f)) throw InputError("--exposure " + text, "must be auto or stops in [-100, 100]");
+    return stops;
+}
+
 IVec2 parsePixel(const std::string& text, const IVec2& size)
 {
     IVec2 pixel(0);

@@ -4,6 +4,7 @@
 #include "core/settings/settings.h"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ const Camera& chosenCamera(const Scene& scene, const CommonOptions& options);
 Settings chosenSettings(const CommonOptions& options);
 /// "1280x720"; each side 1..16384.
 IVec2 chosenSize(const CommonOptions& options);
+/// Of --exposure: stops in [-100, 100]; nothing for "auto".
+std::optional<float> parseExposure(const std::string& text);
 /// "x,y" of a pixel inside the picture.
 IVec2 parsePixel(const std::string& text, const IVec2& size);
 

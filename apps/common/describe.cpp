@@ -1,6 +1,8 @@
 #include "apps/common/describe.h"
 
-#include <cstdio>
+#include "core/report/table.h"
+
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -24,9 +26,7 @@ const char* typeName(LightType type)
 /// Four significant digits: for reading, not for computing.
 std::string brief(double value)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
+    return numberText(4, value);
 }
 
 std::string brief(const Vec3& v)
@@ -103,6 +103,16 @@ Json boxJson(const Aabb& box, const glm::dvec3& origin)
 {
     if (box.empty()) return nullptr;
     return {{"min", placeJson(box.min, origin)}, {"max", placeJson(box.max, origin)}};
+}
+
+Json countersJson(const Counters& counters)
+{
+    Json json = Json::object();
+    for (const Counter& counter : counters) {
+        const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
+        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : std::isfinite(counter.value) ? Json(counter.value) : Json();
+    }
+    return json;
 }
 
 Json cameraJson(const Camera& camera, Angle angle, const glm::dvec3& origin)

@@ -14,16 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json countersJson(const Counters& counters)
-{
-    Json json = Json::object();
-    for (const Counter& counter : counters) {
-        const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
-        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : Json(counter.value);
-    }
-    return json;
-}
-
 Json passesJson(const Frame& frame)
 {
     Json passes = Json::array();

@@ -1,8 +1,8 @@
 #include "apps/common/memory.h"
 
 #include "core/base/errors.h"
+#include "core/report/table.h"
 
-#include <cstdio>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 
@@ -10,9 +10,7 @@ namespace lrsm {
 
 std::string megabytes(std::size_t bytes)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f MB", static_cast<double>(bytes) * 1e-6);
-    return text;
+    return fixedNumber(1, static_cast<double>(bytes) * 1e-6) + " MB";
 }
 
 void enforceMemoryLimit(const MemoryQuestion& question, double maxMegabytes)
@@ -27,12 +25,10 @@ void enforceMemoryLimit(const MemoryQuestion& question, double maxMegabytes)
     if (static_cast<double>(bytesWith(Unknowns::most)) <= limit) return;
     std::size_t needed = bytesWith(Unknowns::least);
     if (static_cast<double>(needed) <= limit) needed = bytesWith(Unknowns::found);
-    if (static_cast<double>(needed) > limit) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%g", maxMegabytes);
-        throw InputError(std::string("--max-memory ") + text, "this frame needs " + megabytes(needed) +
-                                                                  "; lower voxel_resolution, rsm_resolution, the layers or --size (lrsm info shows each part)");
-    }
+    if (static_cast<double>(needed) > limit)
+        throw InputError(
+            "--max-memory " + numberText(6, maxMegabytes),
+            "this frame needs " + megabytes(needed) + "; lower voxel_resolution, rsm_resolution, the layers or --size (lrsm info shows each part)");
 }
 
 nlohmann::ordered_json memoryJson(const std::vector<MemoryRow>& rows)

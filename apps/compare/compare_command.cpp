@@ -1,8 +1,10 @@
 #include "apps/common/commands.h"
+#include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/compare/compare_layer.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,24 +49,13 @@ bool sceneReferred(const std::string& path)
     return true;
 }
 
-template <class T>
-bool parse(const std::string& text, T& value)
-{
-    return CLI::detail::lexical_cast(text, value);
-}
-
 CompareSettings chosenSettings(const CompareArguments& options, bool bothSceneReferred)
 {
     CompareSettings settings;
     settings.sceneReferred = bothSceneReferred;
     settings.pixelsPerDegree = options.pixelsPerDegree;
     if (!(options.pixelsPerDegree >= 1.0 && options.pixelsPerDegree <= 1000.0)) throw InputError("--ppd", "must be 1 .. 1000 pixels per degree");
-    if (options.exposure != "auto") {
-        float stops = 0.0f;
-        if (!parse(options.exposure, stops) || !(std::abs(stops) <= 100.0f))
-            throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
-        settings.exposureStops = stops;
-    }
+    settings.exposureStops = parseExposure(options.exposure);
     char rest = 0;
     if (std::sscanf(options.regions.c_str(), "%dx%d%c", &settings.regionColumns, &settings.regionRows, &rest) != 2 || settings.regionColumns < 1 ||
         settings.regionRows < 1 || settings.regionColumns > 64 || settings.regionRows > 64)
@@ -87,9 +78,7 @@ bool isColor(const LayeredImage& image, const std::string& name)
 
 std::string layerList(const LayeredImage& image)
 {
-    std::string text;
-    for (const ImageLayer& layer : image.layers) text += (text.empty() ? "" : ", ") + (layer.name.empty() ? "RGB" : layer.name);
-    return text;
+    return joined(image.layers, [](const ImageLayer& layer) { return layer.name.empty() ? "RGB" : layer.name; });
 }
 
 /// irradiance where both have it, else combined, else what a viewer shows.
@@ -145,7 +134,7 @@ std::optional<Image<Vec3>> varianceOf(const std::string& layer, const Side& test
 }
 
 struct Gate {
-    std::string metric;
+    const MetricInfo* metric = nullptr;
     double limit = 0.0;
     bool above = true;
 };
@@ -157,16 +146,13 @@ std::vector<Gate> parseGates(const CompareArguments& options)
         for (const std::string& text : above ? options.failAbove : options.failBelow) {
             const std::string option = (above ? "--fail-above " : "--fail-below ") + text;
             const std::size_t at = text.find('=');
-            Gate gate{text.substr(0, at), 0.0, above};
-            if (at == std::string::npos || !parse(text.substr(at + 1), gate.limit) || std::isnan(gate.limit))
+            const std::string name = text.substr(0, at);
+            Gate gate{nullptr, 0.0, above};
+            if (at == std::string::npos || !CLI::detail::lexical_cast(text.substr(at + 1), gate.limit) || std::isnan(gate.limit))
                 throw InputError(option, "must be metric=value, as rmse=0.25");
-            std::string known;
-            bool found = false;
-            for (const auto& [name, meaning] : metricNames()) {
-                found = found || name == gate.metric;
-                known += (known.empty() ? "" : ", ") + name;
-            }
-            if (!found) throw InputError(option, "no metric " + gate.metric + "; there are " + known);
+            for (const MetricInfo& metric : metricInfos())
+                if (metric.name == name) gate.metric = &metric;
+            if (!gate.metric) throw InputError(option, "no metric " + name + "; there are " + joined(metricInfos(), &MetricInfo::name));
             gates.push_back(gate);
         }
     return gates;
@@ -181,11 +167,12 @@ std::vector<std::string> failures(const std::vector<Gate>& gates, const LayerCom
         lines.push_back(layer + ": " + std::to_string(c.metrics.notFiniteTest) + " pixels of the test and " + std::to_string(c.metrics.notFiniteReference) +
                         " of the reference are NaN or infinite (--allow-nan leaves them out)");
     for (const Gate& gate : gates) {
-        const std::optional<double> value = metricByName(c, gate.metric);
+        const std::optional<double> value = gate.metric->value(c);
         if (!value) continue;
         const bool passes = gate.above ? *value <= gate.limit : *value >= gate.limit;  // NaN fails
         char text[160];
-        std::snprintf(text, sizeof text, "%s: %s = %.6g is %s %.6g", layer.c_str(), gate.metric.c_str(), *value, gate.above ? "above" : "below", gate.limit);
+        std::snprintf(text, sizeof text, "%s: %s = %.6g is %s %.6g", layer.c_str(), gate.metric->name.c_str(), *value, gate.above ? "above" : "below",
+                      gate.limit);
         if (!passes) lines.push_back(text);
     }
     return lines;
@@ -277,8 +264,8 @@ int runCompare(const CompareArguments& options)
         for (const LayerComparison& c : comparisons) printComparison(c);
     std::fflush(stdout);
     for (const Gate& gate : gates)
-        if (std::none_of(comparisons.begin(), comparisons.end(), [&](const LayerComparison& c) { return metricByName(c, gate.metric).has_value(); }))
-            throw InputError("limit on " + gate.metric, "no compared layer has it (z needs a reference that stores variances, hdr_flip an EXR)");
+        if (std::none_of(comparisons.begin(), comparisons.end(), [&](const LayerComparison& c) { return gate.metric->value(c).has_value(); }))
+            throw InputError("limit on " + gate.metric->name, "no compared layer has it (z needs a reference that stores variances, hdr_flip an EXR)");
     if (!options.output.empty()) writeResults(options, test, reference, comparisons, json);
     for (const auto& line : json["failures"]) std::cerr << "lrsm: " << line.get<std::string>() << "\n";
     return json["failures"].empty() ? 0 : 1;
@@ -299,7 +286,7 @@ Command addCompare(CLI::App& program)
         ->allow_extra_args(false);
     parser->add_option("--regions", options->regions, "COLUMNSxROWS of the table of regions")->capture_default_str();
     std::string metrics;
-    for (const auto& [name, meaning] : metricNames()) metrics += "\n  " + name + ": " + meaning;
+    for (const MetricInfo& metric : metricInfos()) metrics += "\n  " + metric.name + ": " + metric.meaning;
     parser->add_option("--fail-above", options->failAbove, "metric=value, repeatable: exit code 1 where a layer's metric is above. Metrics:" + metrics)
         ->allow_extra_args(false);
     parser->add_option("--fail-below", options->failBelow, "metric=value, repeatable: for psnr and ssim")->allow_extra_args(false);

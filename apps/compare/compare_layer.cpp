@@ -1,7 +1,6 @@
 #include "apps/compare/compare_layer.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -13,11 +12,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kZBlock = 8;          // pixels along a side of the z-test's blocks
 constexpr float kHeatLimit = 1.0f;  // error maps end at one mean of the reference
 
-std::string number(double value, const char* format = "%.4g")
+std::string number(double value)
 {
-    char text[40];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
+    return numberText(4, value);
 }
 
 /// As a display shows it: clipped and sRGB encoded, in [0, 1].
@@ -55,6 +52,29 @@ Json zJson(const ZTest& z)
 Json finite(double value)
 {
     return std::isfinite(value) ? Json(value) : Json(value > 0 ? "inf" : value < 0 ? "-inf" : "nan");
+}
+
+double worstChannelEnergy(const LayerComparison& c)
+{
+    double worst = 0.0;
+    for (const double ratio : c.metrics.channelRatio) worst = std::max(worst, std::abs(ratio - 1.0));
+    return worst;
+}
+
+double worstRegionEnergy(const LayerComparison& c)
+{
+    double light = 0.0, worst = 0.0;
+    for (const RegionMetrics& region : c.regions) light += region.meanReference * double(region.pixels);
+    for (const RegionMetrics& region : c.regions)
+        if (region.meanReference * double(region.pixels) >= 0.01 * light && region.pixels > 0) worst = std::max(worst, std::abs(region.energyRatio - 1.0));
+    return worst;
+}
+
+double worstRegionRmse(const LayerComparison& c)
+{
+    double worst = 0.0;
+    for (const RegionMetrics& region : c.regions) worst = std::max(worst, region.rmse);
+    return worst;
 }
 
 }  // namespace
@@ -95,62 +115,31 @@ LayerComparison compareLayer(const std::string& layer, const Image<Vec3>& refere
     return result;
 }
 
-const std::vector<std::pair<std::string, std::string>>& metricNames()
+const std::vector<MetricInfo>& metricInfos()
 {
-    static const std::vector<std::pair<std::string, std::string>> names = {
-        {"energy", "|sum test / sum reference - 1|"},
-        {"channel_energy", "the same, worst of red, green and blue"},
-        {"region_energy", "the same, worst region that holds at least 1 % of the light"},
-        {"rmse", "RMSE / mean reference"},
-        {"mae", "MAE / mean reference"},
-        {"relmse", "relative mean square error, worst 0.1 % trimmed"},
-        {"largest", "largest |difference| / mean reference"},
-        {"region_rmse", "RMSE / mean reference of the worst region"},
-        {"psnr", "dB, of the pictures as shown"},
-        {"ssim", "of the pictures as shown"},
-        {"dssim", "1 - ssim"},
-        {"flip", "mean LDR-FLIP"},
-        {"flip_max", "largest LDR-FLIP"},
-        {"hdr_flip", "mean HDR-FLIP (not for PNG)"},
-        {"zrms", "root mean square of z over pixels (reference with variance)"},
-        {"zmax", "largest |z| of a pixel"},
-        {"block_zrms", "root mean square of z over blocks of 8 x 8 pixels"},
-        {"nan", "pixels with NaN or infinity"},
+    using C = LayerComparison;
+    using Value = std::optional<double>;
+    static const std::vector<MetricInfo> all = {
+        {"energy", "|sum test / sum reference - 1|", [](const C& c) -> Value { return std::abs(c.metrics.energyRatio - 1.0); }},
+        {"channel_energy", "the same, worst of red, green and blue", [](const C& c) -> Value { return worstChannelEnergy(c); }},
+        {"region_energy", "the same, worst region that holds at least 1 % of the light", [](const C& c) -> Value { return worstRegionEnergy(c); }},
+        {"rmse", "RMSE / mean reference", [](const C& c) -> Value { return c.metrics.rmse; }},
+        {"mae", "MAE / mean reference", [](const C& c) -> Value { return c.metrics.mae; }},
+        {"relmse", "relative mean square error, worst 0.1 % trimmed", [](const C& c) -> Value { return c.metrics.relMse; }},
+        {"largest", "largest |difference| / mean reference", [](const C& c) -> Value { return c.metrics.largest; }},
+        {"region_rmse", "RMSE / mean reference of the worst region", [](const C& c) -> Value { return worstRegionRmse(c); }},
+        {"psnr", "dB, of the pictures as shown", [](const C& c) -> Value { return c.psnr; }},
+        {"ssim", "of the pictures as shown", [](const C& c) -> Value { return c.ssim; }},
+        {"dssim", "1 - ssim", [](const C& c) -> Value { return 1.0 - c.ssim; }},
+        {"flip", "mean LDR-FLIP", [](const C& c) -> Value { return c.flip.mean; }},
+        {"flip_max", "largest LDR-FLIP", [](const C& c) -> Value { return c.flip.max; }},
+        {"hdr_flip", "mean HDR-FLIP (not for PNG)", [](const C& c) { return c.hdrFlip ? Value(c.hdrFlip->mean) : Value(); }},
+        {"zrms", "root mean square of z over pixels (reference with variance)", [](const C& c) { return c.pixelZ ? Value(c.pixelZ->rms) : Value(); }},
+        {"zmax", "largest |z| of a pixel", [](const C& c) { return c.pixelZ ? Value(c.pixelZ->largest) : Value(); }},
+        {"block_zrms", "root mean square of z over blocks of 8 x 8 pixels", [](const C& c) { return c.blockZ ? Value(c.blockZ->rms) : Value(); }},
+        {"nan", "pixels with NaN or infinity", [](const C& c) -> Value { return double(c.metrics.notFiniteTest + c.metrics.notFiniteReference); }},
     };
-    return names;
-}
-
-std::optional<double> metricByName(const LayerComparison& c, const std::string& name)
-{
-    const Metrics& m = c.metrics;
-    double regionEnergy = 0.0, regionRmse = 0.0, channelEnergy = 0.0, light = 0.0;
-    for (const RegionMetrics& region : c.regions) light += region.meanReference * double(region.pixels);
-    for (const RegionMetrics& region : c.regions) {
-        if (region.meanReference * double(region.pixels) >= 0.01 * light && region.pixels > 0)
-            regionEnergy = std::max(regionEnergy, std::abs(region.energyRatio - 1.0));
-        regionRmse = std::max(regionRmse, region.rmse);
-    }
-    for (const double ratio : m.channelRatio) channelEnergy = std::max(channelEnergy, std::abs(ratio - 1.0));
-
-    if (name == "energy") return std::abs(m.energyRatio - 1.0);
-    if (name == "channel_energy") return channelEnergy;
-    if (name == "region_energy") return regionEnergy;
-    if (name == "rmse") return m.rmse;
-    if (name == "mae") return m.mae;
-    if (name == "relmse") return m.relMse;
-    if (name == "largest") return m.largest;
-    if (name == "region_rmse") return regionRmse;
-    if (name == "psnr") return c.psnr;
-    if (name == "ssim") return c.ssim;
-    if (name == "dssim") return 1.0 - c.ssim;
-    if (name == "flip") return c.flip.mean;
-    if (name == "flip_max") return c.flip.max;
-    if (name == "hdr_flip" && c.hdrFlip) return c.hdrFlip->mean;
-    if (name == "zrms" && c.pixelZ) return c.pixelZ->rms;
-    if (name == "zmax" && c.pixelZ) return c.pixelZ->largest;
-    if (name == "block_zrms" && c.blockZ) return c.blockZ->rms;
-    if (name == "nan") return double(m.notFiniteTest + m.notFiniteReference);
-    return {};
+    return all;
 }
 
 Json comparisonJson(const LayerComparison& c)

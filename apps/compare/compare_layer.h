@@ -42,9 +42,12 @@ struct LayerComparison {
 LayerComparison compareLayer(const std::string& layer, const Image<Vec3>& reference, const Image<Vec3>& test, const std::optional<Image<Vec3>>& variance,
                              const PixelMask& valid, const CompareSettings& settings);
 
-/// The value of a metric by name (metricNames); nothing when this comparison does not have it (zrms without variance).
-std::optional<double> metricByName(const LayerComparison& comparison, const std::string& name);
-const std::vector<std::pair<std::string, std::string>>& metricNames();  ///< name, meaning
+/// What a comparison may be held to by name; `value` is nothing where a comparison does not have it (zrms without variance).
+struct MetricInfo {
+    std::string name, meaning;
+    std::optional<double> (*value)(const LayerComparison& comparison);
+};
+const std::vector<MetricInfo>& metricInfos();
 
 nlohmann::ordered_json comparisonJson(const LayerComparison& comparison);
 ComparedLayer comparisonSection(const LayerComparison& comparison);

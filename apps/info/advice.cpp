@@ -1,10 +1,10 @@
 #include "apps/info/advice.h"
 
 #include "conetrace/render.h"
+#include "core/report/table.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace lrsm {
 namespace {
@@ -16,13 +16,6 @@ constexpr double kFineMap = 0.5;
 /// Voxels so many times finer than the LRSM's texels resolve nothing that the light's map holds.
 constexpr double kFineVoxels = 1.5;
 constexpr int kLeastResolution = 64;
-
-std::string brief(const char* format, double a, double b = 0.0)
-{
-    char text[160];
-    std::snprintf(text, sizeof text, format, a, b);
-    return text;
-}
 
 /// Work of a frame in units of its own, from the passes' shares on the built-in scenes: good for ratios between settings of one scene, no more.
 double frameWork(const SceneAnalysis& analysis, const Settings& settings, const std::vector<int>& layers, int width, int height)
@@ -51,13 +44,7 @@ class Adviser {
         applySetting(changed, key + "=" + to);
         const std::vector<int> layers = layersOf(changed);
         const auto bytes = [&](const Settings& of, const std::vector<int>& kept) {
-            std::vector<PassReport> counted;
-            for (const int count : kept) {
-                PassReport& report = counted.emplace_back();
-                report.name = "lrsm " + std::to_string(counted.size() - 1);
-                report.counters = {{"layers_kept", double(count)}};
-            }
-            const MemoryQuestion question{scene_, analysis_.needs, of, width_, height_, Unknowns::found, &counted};
+            const MemoryQuestion question{.scene = scene_, .needs = analysis_.needs, .settings = of, .width = width_, .height = height_, .layersKept = kept};
             return static_cast<double>(frameBytes(predictMemory(question), width_, height_));
         };
         advice.push_back(
@@ -108,7 +95,8 @@ void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Advis
     const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.moved; });
     const double slices = largest(analysis.lights, [](const LightAnalysis& light) { return double(light.depthSlices); });
     if (settings.layers.depthLayers > 1 && slices > 1.0 && moved < kMergedDepthLimit)
-        adviser.add("depth_layers", settings.layers.depthLayers, 1, brief("read through one layer, %.2g %% of the light moves in depth", 100.0 * moved));
+        adviser.add("depth_layers", settings.layers.depthLayers, 1,
+                    "read through one layer, " + numberText(2, 100.0 * moved) + " % of the light moves in depth");
 }
 
 /// Texels of the light's map against the voxels: the finer of the two is wasted.
@@ -124,7 +112,7 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
     for (double ratio = coarsest; ratio <= kFineMap && texels > kLeastResolution; ratio *= 2.0) texels /= 2;
     if (texels < settings.rsm.resolution)
         adviser.add("rsm_resolution", settings.rsm.resolution, texels,
-                    brief("LRSM texels are %.2g of the finest tap wide: next to nothing reads the base level", coarsest));
+                    "LRSM texels are " + numberText(2, coarsest) + " of the finest tap wide: next to nothing reads the base level");
 
     int voxels = settings.voxel.resolution;
     float start = settings.cones.march.startVoxels;
@@ -134,9 +122,9 @@ void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, 
     }
     if (voxels == settings.voxel.resolution) return;
     adviser.add("voxel_resolution", settings.voxel.resolution, voxels,
-                brief("LRSM texels are %.2g voxels wide: the light's map resolves less than the voxels", finest));
+                "LRSM texels are " + numberText(2, finest) + " voxels wide: the light's map resolves less than the voxels");
     if (start != settings.cones.march.startVoxels)
-        adviser.add("start_voxels", brief("%g", double(settings.cones.march.startVoxels)), brief("%g", double(start)), "goes with the wider voxels");
+        adviser.add("start_voxels", numberText(6, double(settings.cones.march.startVoxels)), numberText(6, double(start)), "goes with the wider voxels");
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include "apps/info/advice.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "core/report/table.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
 #include "core/settings/settings_table.h"
 
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,26 +26,12 @@ struct InfoArguments : CommonOptions {
 /// Metres as millimetres below 1 m.
 std::string length(double metres)
 {
-    char text[32];
-    if (metres < 1.0)
-        std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
-    else
-        std::snprintf(text, sizeof text, "%.3g m", metres);
-    return text;
+    return metres < 1.0 ? shortNumber(1e3 * metres) + " mm" : shortNumber(metres) + " m";
 }
 
 std::string percent(double share)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * share);
-    return text;
-}
-
-std::string ratio(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", value);
-    return text;
+    return (share < 0.1 ? numberText(2, 100.0 * share) : fixedNumber(0, 100.0 * share)) + " %";
 }
 
 nlohmann::ordered_json lightJson(const LightAnalysis& light, const SceneAnalysis& analysis)
@@ -92,7 +78,7 @@ void printLight(std::ostream& out, std::size_t index, const LightAnalysis& light
     }
     out << percent(static_cast<double>(light.litTexels) / static_cast<double>(light.texels)) << " of the map's surface is lit, " << light.layers
         << " layers kept\n"
-        << "    LRSM texel " << length(light.texelSize) << ", " << ratio(light.texelSize / analysis.finestTap) << " of the finest tap\n"
+        << "    LRSM texel " << length(light.texelSize) << ", " << fixedNumber(2, light.texelSize / analysis.finestTap) << " of the finest tap\n"
         << "    light that moves if read through one depth layer " << percent(light.moved) << "\n";
 }
 
@@ -108,8 +94,9 @@ void printAdvice(std::ostream& out, const std::vector<Advice>& advice)
     out << "advice (docs/requirements.md says what it cost and saved where measured):\n";
     if (advice.empty()) out << "  none: the settings fit\n";
     for (const Advice& change : advice)
-        out << "  --set " << change.key << "=" << change.to << " (" << change.from << "): " << change.why << "; time x" << ratio(change.predictedTimeRatio)
-            << ", memory x" << ratio(change.predictedMemoryRatio) << (change.bitsEqual ? ", every bit kept" : "") << "\n";
+        out << "  --set " << change.key << "=" << change.to << " (" << change.from << "): " << change.why << "; time x"
+            << fixedNumber(2, change.predictedTimeRatio) << ", memory x" << fixedNumber(2, change.predictedMemoryRatio)
+            << (change.bitsEqual ? ", every bit kept" : "") << "\n";
 }
 
 int listBuiltins(bool json)

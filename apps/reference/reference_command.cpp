@@ -106,13 +106,7 @@ int runReference(const ReferenceArguments& options)
     const ReferenceSettings settings = chosenReference(options);
     const SampleRange range = chosenRange(options);
     if (!(options.checkpointSeconds >= 0.0)) throw InputError("--checkpoint-seconds", "must be 0 or more");
-    std::optional<float> exposure;
-    if (options.exposure != "auto") {
-        float stops = 0.0f;
-        if (!CLI::detail::lexical_cast(options.exposure, stops) || !(std::abs(stops) <= 100.0f))
-            throw InputError("--exposure " + options.exposure, "must be auto or stops in [-100, 100]");
-        exposure = stops;
-    }
+    const std::optional<float> exposure = parseExposure(options.exposure);
     {
         const OutputFolder writable(options.output);
     }  // fails now rather than after hours

@@ -2,6 +2,7 @@
 
 #include "apps/common/describe.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/imageio/image_io.h"
 
 #include <charconv>
@@ -84,9 +85,7 @@ SampleRange parseSamples(const std::string& text)
 
 std::string describeRanges(const std::vector<SampleRange>& ranges)
 {
-    std::string text;
-    for (const SampleRange& range : ranges) text += (text.empty() ? "" : ", ") + std::to_string(range.begin) + ":" + std::to_string(range.end);
-    return text;
+    return joined(ranges, [](const SampleRange& range) { return std::to_string(range.begin) + ":" + std::to_string(range.end); });
 }
 
 ReferenceFrame writeReference(OutputFolder& folder, const Checkpoint& checkpoint, const SeenLayers& seen, const Json& json, std::optional<float> exposureStops)

@@ -2,12 +2,12 @@
 
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace lrsm {
 
@@ -43,14 +43,6 @@ std::string refusalOf(const Settings& settings)
 
 using Words = std::vector<std::string>;
 
-Words wordsOf(const std::string& text)
-{
-    std::istringstream stream(text);
-    Words words;
-    for (std::string word; stream >> word;) words.push_back(word);
-    return words;
-}
-
 /// Values worth a look, cheap to costly where that is known. Choices and flags list themselves.
 Words valuesOf(const SettingInfo& info, const Settings& base)
 {
@@ -81,12 +73,8 @@ Words valuesOf(const SettingInfo& info, const Settings& base)
                                                                {"rsm_min_level", "2 1 0"},
                                                                {"gaussian_table_size", "64 256 1024 4096"},
                                                                {"specular_aperture_degrees", "5 10 20"}};
-    if (const auto found = numbers.find(info.key); found != numbers.end()) return wordsOf(found->second);
-    if (info.allowed.find(" | ") != std::string::npos) {
-        std::string names = info.allowed;
-        std::replace(names.begin(), names.end(), '|', ' ');
-        return wordsOf(names);
-    }
+    if (const auto found = numbers.find(info.key); found != numbers.end()) return split(found->second, " ");
+    if (info.allowed.find(" | ") != std::string::npos) return split(info.allowed, " | ");
     // A number that the list does not know: a quarter to four times the base's value, as far as its range goes.
     Words values;
     const auto json = settingsToJson(base).at(info.key);
@@ -122,10 +110,10 @@ Words companionsOf(const std::string& key, const std::string& value)
                                                              {"emitter_slant_cap", slab},
                                                              {"gaussian_table_size", "gaussian=table"},
                                                              {"specular_aperture_degrees", "specular_aperture=fixed"}};
-    if (key == "estimator" && value == "slab") return wordsOf(slab);
-    if (key == "layer_selection") return wordsOf(value == "centre" ? paper : "layer_overlap=0");
+    if (key == "estimator" && value == "slab") return split(slab, " ");
+    if (key == "layer_selection") return split(value == "centre" ? paper : "layer_overlap=0", " ");
     const auto found = byKey.find(key);
-    return found == byKey.end() ? Words() : wordsOf(found->second);
+    return found == byKey.end() ? Words() : split(found->second, " ");
 }
 
 /// `base` with one value and its companions; the label names what differs from the base, the value itself first.
@@ -157,12 +145,7 @@ Axis parseAxis(const std::string& text)
 {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) throw InputError("axis \"" + text + "\"", "must be key=v1,v2,...");
-    Axis axis{text.substr(0, equals), {}};
-    for (std::size_t begin = equals + 1; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        axis.values.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
+    const Axis axis{text.substr(0, equals), split(text.substr(equals + 1), ",")};
     for (const std::string& value : axis.values) {
         Settings settings;
         applySetting(settings, axis.key + "=" + value);

@@ -226,11 +226,9 @@ Measured measureSettings(const SceneCase& sceneCase, const TruthFigures& figures
     std::vector<double> calibrations;
     for (; done < repeat; ++done) {
         calibrations.push_back(calibration.run().cpu);
-        const auto before = options.instructions ? options.instructions->count() : std::nullopt;
         Frame frame = renderFrame(sceneCase.scene, sceneCase.camera, settings, renderOptions);
         times.add(frame.passes);
         if (done > 0) continue;  // every frame has the same bits and the same work
-        if (before) row.instructions = *options.instructions->count() - *before;
         addReports(row, frame.passes);
         measured.irradiance = std::move(frame.irradiance);
     }

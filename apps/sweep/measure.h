@@ -1,6 +1,5 @@
 #pragma once
 
-#include "apps/sweep/instructions.h"
 #include "apps/sweep/measurement.h"
 #include "core/scene/scene.h"
 #include "reference/metrics.h"
@@ -65,8 +64,7 @@ class Calibration {
 struct MeasureOptions {
     int repeat = 1;  ///< frames timed; the calibration frame runs before each
     std::function<void(double fraction)> progress = {};
-    const InstructionCounter* instructions = nullptr;  ///< opened before the first parallel work
-    const std::atomic<bool>* stop = nullptr;           ///< ends the path tracer between two pictures
+    const std::atomic<bool>* stop = nullptr;  ///< ends the path tracer between two pictures
 };
 
 struct Measured {

@@ -1,5 +1,6 @@
 #include "apps/sweep/measurement.h"
 
+#include "apps/common/describe.h"
 #include "core/base/json_reader.h"
 #include "core/settings/settings_table.h"
 
@@ -78,25 +79,13 @@ double PictureError::net() const
 
 namespace {
 
-Json timeJson(const RepeatedTime& time)
-{
-    return {{"ms", numberJson(time.median)}, {"ms_min", numberJson(time.min)}, {"ms_spread", numberJson(time.spread)}};
-}
-
 Json passesJson(const std::vector<PassTime>& passes)
 {
     Json json = Json::object();
     for (const PassTime& pass : passes) {
-        json[pass.family] = timeJson(pass.time);
+        addTime(json[pass.family], "ms", pass.time);
         json[pass.family]["per_pixel"] = pass.perPixel;
     }
-    return json;
-}
-
-Json countersJson(const Counters& counters)
-{
-    Json json = Json::object();
-    for (const Counter& counter : counters) json[counter.name] = numberJson(counter.value);
     return json;
 }
 
@@ -127,7 +116,6 @@ Json measurementJson(const Measurement& row)
     json["passes"] = passesJson(row.passes);
     json["counters"] = countersJson(row.counters);
     json["rays"] = row.rays;
-    json["instructions"] = row.instructions ? Json(*row.instructions) : Json();
     json["bytes"] = row.bytes;
     json["gpu_bytes"] = row.gpuBytes;
     json["irradiance_sha256"] = row.irradianceSha256;
@@ -181,11 +169,9 @@ Measurement measurementFromJson(const Json& json, const std::string& place)
     row.frameCpu = numberIn(in["frame_cpu_ms"]);
     row.calibrationCpu = numberIn(in["calibration_cpu_ms"]);
     row.cost = numberIn(in["cost"]);
-    for (const auto& [family, entry] : in["passes"].members())
-        row.passes.push_back({family, entry["per_pixel"].flag(), {numberIn(entry["ms"]), numberIn(entry["ms_min"]), numberIn(entry["ms_spread"])}});
+    for (const auto& [family, entry] : in["passes"].members()) row.passes.push_back({family, entry["per_pixel"].flag(), readTime(entry, "ms")});
     for (const auto& [name, entry] : in["counters"].members()) row.counters.push_back({name, numberIn(entry)});
     row.rays = in["rays"].count();
-    if (!in["instructions"].isNull()) row.instructions = in["instructions"].count();
     row.bytes = in["bytes"].count();
     row.gpuBytes = in["gpu_bytes"].count();
     row.irradianceSha256 = in["irradiance_sha256"].text();

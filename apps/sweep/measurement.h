@@ -61,21 +61,20 @@ struct Measurement {
 
     PictureError error;
 
-    RepeatedTime frame;                         ///< wall time of all passes
-    double frameCpu = 0.0;                      ///< median processor time of all passes, all threads, ms
-    std::vector<PassTime> passes;               ///< in the frame's order; the passes of a family summed
-    double calibrationCpu = 0.0;                ///< processor time of the calibration frame run beside this row, ms
-    double cost = 0.0;                          ///< frameCpu / calibrationCpu: time in calibration frames, the figure that carries between runs and machines
-    Counters counters;                          ///< of one frame, by name, summed over its passes; none for the path tracer
-    std::uint64_t rays = 0;                     ///< path tracer
-    std::optional<std::uint64_t> instructions;  ///< of one frame, user mode, where the machine counts them
-    std::size_t bytes = 0, gpuBytes = 0;        ///< of the resident passes (PassTraits) together, held; in the GPU's formats
-    std::string irradianceSha256;               ///< equal hashes: equal bits
+    RepeatedTime frame;                   ///< wall time of all passes
+    double frameCpu = 0.0;                ///< median processor time of all passes, all threads, ms
+    std::vector<PassTime> passes;         ///< in the frame's order; the passes of a family summed
+    double calibrationCpu = 0.0;          ///< processor time of the calibration frame run beside this row, ms
+    double cost = 0.0;                    ///< frameCpu / calibrationCpu: time in calibration frames, the figure that carries between runs and machines
+    Counters counters;                    ///< of one frame, by name, summed over its passes; none for the path tracer
+    std::uint64_t rays = 0;               ///< path tracer
+    std::size_t bytes = 0, gpuBytes = 0;  ///< of the resident passes (PassTraits) together, held; in the GPU's formats
+    std::string irradianceSha256;         ///< equal hashes: equal bits
 };
 
 /// An object: scene, case, key, label, kind, base, spp, width, height, truth_spp, energy, rmse, net, mae, flip, noise, frame_ms, frame_ms_min,
 /// frame_ms_spread, frame_cpu_ms, calibration_cpu_ms, cost, passes (an object of {ms, ms_min, ms_spread, per_pixel} by family), counters (an object),
-/// rays, instructions (null when unknown), bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
+/// rays, bytes, gpu_bytes, irradiance_sha256, then one entry a setting by its key (null for the path tracer).
 /// Passes and counters are those that the frame reported: no list of them is anywhere.
 /// Numbers that are not finite are null too; they read back as NaN. Reads back to the same bits.
 nlohmann::ordered_json measurementJson(const Measurement& row);

@@ -1,5 +1,6 @@
 #include "apps/sweep/operating_points.h"
 
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <string>
@@ -34,12 +35,8 @@ constexpr Point kPoints[] = {
 
 Settings settingsFromText(Settings base, std::string_view assignments)
 {
-    while (!assignments.empty()) {
-        const std::size_t end = assignments.find(' ');
-        const std::string_view word = assignments.substr(0, end);
-        if (!word.empty()) applySetting(base, std::string(word));
-        assignments.remove_prefix(end == std::string_view::npos ? assignments.size() : end + 1);
-    }
+    for (const std::string& word : split(assignments, " "))
+        if (!word.empty()) applySetting(base, word);
     validate(base);
     return base;
 }

@@ -218,8 +218,6 @@ SearchResult runFrontSearch(const Settings& base, const std::vector<Axis>& axes,
     requireOption(options.budget >= 1, "budget " + std::to_string(options.budget), "must be 1 or more settings");
     requireOption(options.abandonMargin > 1.0, "abandon margin", "must be above 1");
     requireOption(options.exploreEvery == 0 || options.exploreEvery >= 2, "explore every", "must be 0 or 2 and more");
-    requireOption(options.sceneCount >= 1, "scenes", "must be 1 or more");
-    requireOption(bool(options.evaluate), "evaluate", "must be set");
     return FrontSearch(base, axes, options).run();
 }
 

@@ -1,6 +1,7 @@
 #include "apps/sweep/search_grid.h"
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -81,9 +82,10 @@ bool SettingsGrid::holds(const Settings& settings) const
 
 std::string SettingsGrid::label(const Settings& settings) const
 {
-    std::string text;
-    for (const SettingDifference& change : differences(base_, settings)) text += (text.empty() ? "" : " ") + change.key + "=" + change.b;
-    return text.empty() ? "base" : text;
+    const std::vector<SettingDifference> changes = differences(base_, settings);
+    return changes.empty() ? "base"
+                           : joined(
+                                 changes, [](const SettingDifference& change) { return change.key + "=" + change.b; }, " ");
 }
 
 double SettingsGrid::size() const

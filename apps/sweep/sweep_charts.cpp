@@ -31,13 +31,7 @@ void addDot(ChartSeries& series, const Dot& dot)
 
 ChartSeries seriesOf(const std::string& label, bool line, bool dashed, const std::string& marker, double size, const std::string& colour)
 {
-    ChartSeries series{label, {}, {}};
-    series.line = line;
-    series.dashed = dashed;
-    series.marker = marker;
-    series.markerSize = size;
-    series.colour = colour;
-    return series;
+    return {.label = label, .line = line, .dashed = dashed, .marker = marker, .markerSize = size, .colour = colour};
 }
 
 /// Each preset a series of its own, with a colour and a mark that are the same in every plot.
@@ -118,8 +112,8 @@ std::vector<Dot> dotsOf(const std::vector<const Measurement*>& rows, const Sweep
 {
     std::vector<Dot> dots;
     for (const Measurement* row : rows) {
-        Dot dot{row, x(*row), y(*row), hoverOf(*row), pictures.of(*row)};
-        const std::vector<int> truth = pictures.truthOf(*row);
+        Dot dot{row, x(*row), y(*row), hoverOf(*row), pictures.of(row->key)};
+        const std::vector<int> truth = pictures.of(row->caseKey);
         if (!dot.pictures.empty() && !truth.empty()) {
             dot.pictures.push_back(truth.front());
             dot.hover += "\nthis, and the truth:";
@@ -129,26 +123,11 @@ std::vector<Dot> dotsOf(const std::vector<const Measurement*>& rows, const Sweep
     return dots;
 }
 
-double costOf(const Measurement& row)
-{
-    return row.cost;
-}
-double percentErrorOf(const Measurement& row)
-{
-    return 100.0 * row.error.net();
-}
-double megabytesOf(const Measurement& row)
-{
-    return static_cast<double>(row.bytes) / 1e6;
-}
-double flipOf(const Measurement& row)
-{
-    return row.error.flip;
-}
-double energyOf(const Measurement& row)
-{
-    return row.error.energy;
-}
+constexpr auto costOf = [](const Measurement& row) { return row.cost; };
+constexpr auto percentErrorOf = [](const Measurement& row) { return 100.0 * row.error.net(); };
+constexpr auto megabytesOf = [](const Measurement& row) { return static_cast<double>(row.bytes) / 1e6; };
+constexpr auto flipOf = [](const Measurement& row) { return row.error.flip; };
+constexpr auto energyOf = [](const Measurement& row) { return row.error.energy; };
 
 double noiseOf(const CaseRows& rows)
 {
@@ -170,7 +149,7 @@ std::vector<Dot> combinedDots(const std::vector<CombinedRow>& rows, const Combin
         if (dot.row->bytes) dot.hover += ", memory " + shortNumber(row.bytes);
         for (std::size_t i = 0; i < row.rows.size(); ++i) {
             dot.hover += "\n" + all.cases[i]->name + ": " + percentText(row.rows[i]->error.net()) + ", " + shortNumber(row.rows[i]->cost) + " frames";
-            for (const int picture : pictures.of(*row.rows[i])) dot.pictures.push_back(picture);
+            for (const int picture : pictures.of(row.rows[i]->key)) dot.pictures.push_back(picture);
         }
         dots.push_back(std::move(dot));
     }
@@ -201,15 +180,9 @@ std::vector<const Measurement*> mostWanted(const std::vector<CaseRows>& cases, c
 
 }  // namespace
 
-std::vector<int> SweepPictures::of(const Measurement& row) const
+std::vector<int> SweepPictures::of(const std::string& key) const
 {
-    const auto place = byKey.find(row.key);
-    return place == byKey.end() ? std::vector<int>{} : std::vector<int>{place->second};
-}
-
-std::vector<int> SweepPictures::truthOf(const Measurement& row) const
-{
-    const auto place = byKey.find(row.caseKey);
+    const auto place = byKey.find(key);
     return place == byKey.end() ? std::vector<int>{} : std::vector<int>{place->second};
 }
 

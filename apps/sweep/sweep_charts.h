@@ -16,9 +16,8 @@ struct SweepPictures {
     std::vector<std::vector<std::byte>> pngs;
     std::unordered_map<std::string, int> byKey;  ///< a row's key to its place; looked up, never walked
     std::size_t found = 0;                       ///< files there were
-    /// A list of none or one: the row's; the truth's, whose key is the case's.
-    std::vector<int> of(const Measurement& row) const;
-    std::vector<int> truthOf(const Measurement& row) const;
+    /// A list of none or one: of a row's key, or of a case's, whose picture is the truth.
+    std::vector<int> of(const std::string& key) const;
 };
 /// Those of DIR/thumbnails, as many as `budget` bytes hold: first the truths', then those of presets, fronts and path tracer.
 SweepPictures loadThumbnails(const std::vector<CaseRows>& cases, const CombinedCases& all, const std::string& directory, std::size_t budget);

@@ -213,7 +213,6 @@ bool runAll(const SweepArguments& options, Plan plan, const std::vector<NamedSet
 
 int runSweep(const SweepArguments& options)
 {
-    const InstructionCounter instructions;  // before the first thread
     if (options.output.empty()) throw InputError("sweep", "needs -o FOLDER");
     const Plan plan = chosenPlan(options);
     const Settings base = chosenSettings(options);
@@ -243,8 +242,7 @@ int runSweep(const SweepArguments& options)
                       .repeat = options.repeat,
                       .maxMemoryMegabytes = options.maxMemoryMegabytes,
                       .quiet = options.quiet,
-                      .stop = &catching.asked(),
-                      .instructions = &instructions});
+                      .stop = &catching.asked()});
         complete = runAll(options, plan, settings, base, run, cases);
         measured = run.measured();
         found = run.found();

@@ -2,6 +2,7 @@
 
 #include "apps/sweep/sweep_charts.h"
 #include "apps/sweep/sweep_tables.h"
+#include "core/base/text.h"
 #include "core/report/html.h"
 
 #include <algorithm>
@@ -23,8 +24,7 @@ std::string summaryOf(const std::vector<Measurement>& rows, const std::vector<Ca
     for (const CaseRows& one : cases) tracer += one.pathTracer.size();
     std::string text = countOf(rows.size() - tracer, "LRSM row") + " and " + countOf(tracer, "path tracer row") + " on " + countOf(cases.size(), "scene") +
                        ". Errors are of the irradiance against a path-traced truth of one bounce: RMSE over the mean, the truth's own noise taken out; nothing "
-                       "is claimed below its "
-                       "noise floor. Time is processor time in calibration frames, a fixed small frame rendered beside each measurement: ";
+                       "is claimed below its noise floor. Time is processor time in calibration frames, a fixed small frame rendered beside each measurement: ";
     text += "one is " + shortNumber(unit.median) + " ms here (" + shortNumber(unit.min) + " to " + shortNumber(unit.max) + " over the rows).";
     if (noise > 0.0)
         text += " Rows that equal their base in every bit differ from it in time by " + percentText(noise) +
@@ -42,8 +42,7 @@ std::string picturesText(const SweepPictures& pictures)
 std::string combinedHtml(const CombinedCases& all, const SweepPictures& pictures)
 {
     if (all.cases.size() < 2) return {};
-    std::string names;
-    for (const CaseRows* one : all.cases) names += (names.empty() ? "" : ", ") + one->name;
+    const std::string names = joined(all.cases, &CaseRows::name);
     return headingHtml("All scenes") +
            paragraphHtml("Geometric means over " + names + " of each figure over that of balanced in the same scene; " +
                          countOf(all.settings.size(), "setting") + " measured on all of them.") +
@@ -64,11 +63,9 @@ std::string effectsHtml(const std::vector<CaseRows>& cases, double unit)
     const ReportTable changing = effectsTable(effects), nothing = nothingTable(effects);
     return headingHtml("One setting at a time") +
            paragraphHtml(
-               "Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change "
-               "of processor time "
-               "(mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved is paid "
-               "with (saves time, "
-               "cheapest first). Coloured rows lose in both and save no memory. Changes of time below " +
+               "Each value against its base: geometric mean over the scenes of the ratio of errors, of times and of bytes, less one. \"ms\" is the change of "
+               "processor time (mean over the scenes). \"% of error a ms\": what a millisecond buys (buys accuracy, dearest last), or what a millisecond saved "
+               "is paid with (saves time, cheapest first). Coloured rows lose in both and save no memory. Changes of time below " +
                percentText(tolerance) + " count as none.") +
            foldedHtml(countOf(changing.rows.size(), "value") + ", sorted by what a millisecond buys", tableHtml(changing)) +
            (nothing.rows.empty() ? ""
@@ -84,12 +81,8 @@ std::string rivalsHtml(const std::vector<CaseRows>& cases)
     return headingHtml("Equal time and equal error: the path tracer") +
            paragraphHtml(
                "The path tracer's error in each preset's time, and its time (in calibration frames, as all here) for each preset's error, interpolated between "
-               "its "
-               "measured points in "
-               "logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. "
-               "\"<= floor\": at or below the truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no "
-               "ratio is "
-               "given.") +
+               "its measured points in logarithms; ratios are the path tracer's figure over LRSM's: above 1 they speak for LRSM. \"<= floor\": at or below the "
+               "truth's noise, where nothing is compared. \"> x\" and \"< x\": beyond the measured end of the curve, where no ratio is given.") +
            tableHtml(equalSummaryTable(summarizeEqual(presets))) +
            foldedHtml("Each preset against the path tracer, scene by scene", tableHtml(presetsTable(presets)), cases.size() == 1);
 }

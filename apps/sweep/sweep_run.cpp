@@ -96,8 +96,7 @@ const Measurement* SweepRun::measure(const SweepTask& task)
     try {
         const Requirements needs = analyseRequirements(one.scene.scene, task.named.settings.force);
         enforceMemoryLimit({one.scene.scene, needs, task.named.settings, one.scene.width, one.scene.height}, options_.maxMemoryMegabytes);
-        MeasureOptions options{
-            .repeat = options_.repeat, .progress = [&](double fraction) { show(one, task.named.label, fraction); }, .instructions = options_.instructions};
+        MeasureOptions options{.repeat = options_.repeat, .progress = [&](double fraction) { show(one, task.named.label, fraction); }};
         Measured measured = measureSettings(one.scene, one.figures, task.named.settings, calibration_, options);
         measured.row.label = task.named.label;
         measured.row.kind = task.kind;
@@ -123,8 +122,7 @@ bool SweepRun::measurePathTracer(std::size_t sceneCase, std::uint64_t samples)
     if (there == rows) return true;
     if (stopped()) return false;
     // One run makes them all: what is there is traced again, and not added again.
-    const MeasureOptions options{
-        .progress = [&](double fraction) { show(one, "path tracer", fraction); }, .instructions = options_.instructions, .stop = options_.stop};
+    const MeasureOptions options{.progress = [&](double fraction) { show(one, "path tracer", fraction); }, .stop = options_.stop};
     lrsm::measurePathTracer(one.scene, one.figures, samples, calibration_, options, [&](const Measured& measured) {
         if (!store_.find(measured.row.key)) keep(one, measured);
     });

@@ -33,7 +33,6 @@ struct SweepRunOptions {
     double maxMemoryMegabytes = 0.0;  ///< 0: no limit
     bool quiet = false;
     const std::atomic<bool>* stop = nullptr;
-    const InstructionCounter* instructions = nullptr;
 };
 
 class SweepRun {

@@ -1,5 +1,6 @@
 #include "apps/sweep/sweep_tables.h"
 
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
@@ -100,9 +101,8 @@ std::string plainNumber(double value)
 std::string changedText(const Measurement& row)
 {
     if (row.kind == RowKind::pathTracer) return std::to_string(row.samples) + (row.samples == 1 ? " path a pixel" : " paths a pixel");
-    std::string text;
-    for (const SettingDifference& d : differences(Settings{}, row.settings)) text += (text.empty() ? "" : ", ") + d.key + "=" + d.b;
-    return text.empty() ? "nothing" : text;
+    const std::vector<SettingDifference> changes = differences(Settings{}, row.settings);
+    return changes.empty() ? "nothing" : joined(changes, [](const SettingDifference& d) { return d.key + "=" + d.b; });
 }
 
 ReportTable casesTable(const std::vector<CaseRows>& cases)

@@ -16,10 +16,6 @@ namespace lrsm {
 /// continued; it then holds what `lrsm reference` writes. `references` empty: nothing is read or kept. Nothing when `stop` was set meanwhile; what is done is
 /// kept there. InputError for fewer samples than the noise can be told from.
 std::optional<Truth> findOrMakeTruth(const SceneCase& sceneCase, std::uint64_t samples, const std::string& references, Progress& progress,
-                                     const std::atomic<bool>* stop);
-inline Truth findOrMakeTruth(const SceneCase& sceneCase, std::uint64_t samples, const std::string& references, Progress& progress)
-{
-    return findOrMakeTruth(sceneCase, samples, references, progress, nullptr).value();
-}
+                                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace lrsm

@@ -194,7 +194,7 @@ int runTune(const TuneArguments& options)
     const auto truthAt = [&](const IVec2& at, std::uint64_t samples) {
         sceneCase.width = at.x;
         sceneCase.height = at.y;
-        return SizedCase(sceneCase, at, findOrMakeTruth(sceneCase, samples, options.references, progress));
+        return SizedCase(sceneCase, at, findOrMakeTruth(sceneCase, samples, options.references, progress).value());
     };
     SizedCase small = truthAt(probeSize, options.samples);
     refuseBelowNoise(budget, small.figures(), small.samples());

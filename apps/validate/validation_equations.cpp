@@ -23,10 +23,10 @@ ReportTable checksForPeople(const EquationReport& report, bool whole)
                                         c.function,
                                         c.errorKind,
                                         shortNumber(c.worst),
-                                        shortNumber(c.bound),
-                                        c.bound > 0.0 ? shortNumber(c.worst / c.bound) : "",
+                                        shortNumber(c.bound.value),
+                                        c.bound.value > 0.0 ? shortNumber(c.worst / c.bound.value) : "",
                                         nanosecondsCell(c.nanoseconds)};
-        if (whole) row.insert(row.end(), {c.boundName, c.oracle, c.domain, shortNumber(c.meanError), std::to_string(c.evaluations), c.worstInput});
+        if (whole) row.insert(row.end(), {c.bound.name, c.oracle, c.domain, shortNumber(c.meanError), std::to_string(c.evaluations), c.worstInput});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -48,7 +48,7 @@ ReportTable checksForPrograms(const EquationReport& report)
                        "nanoseconds", "holds"},
                       {}};
     for (const EquationCheck& c : report.checks)
-        table.rows.push_back({c.equation, c.function, c.oracle, c.domain, c.boundName, c.errorKind, exactNumber(c.bound), exactNumber(c.worst),
+        table.rows.push_back({c.equation, c.function, c.oracle, c.domain, c.bound.name, c.errorKind, exactNumber(c.bound.value), exactNumber(c.worst),
                               exactNumber(c.meanError), c.worstInput, std::to_string(c.evaluations), exactNumber(c.nanoseconds), c.holds() ? "1" : "0"});
     return table;
 }
@@ -70,9 +70,9 @@ Json equationsJson(const EquationReport& report)
                           {"function", c.function},
                           {"oracle", c.oracle},
                           {"domain", c.domain},
-                          {"boundName", c.boundName},
+                          {"boundName", c.bound.name},
                           {"errorKind", c.errorKind},
-                          {"bound", c.bound},
+                          {"bound", c.bound.value},
                           {"worst", c.worst},
                           {"meanError", c.meanError},
                           {"worstInput", c.worstInput},
@@ -89,11 +89,10 @@ Json equationsJson(const EquationReport& report)
                           {"bias", t.bias},
                           {"nanoseconds", t.nanoseconds},
                           {"bytes", t.bytes}});
-    for (const EquationCurve& curve : report.curves) {
+    for (const auto& [equation, chart] : report.curves) {
         Json series = Json::array();
-        for (const EquationSeries& s : curve.series) series.push_back({{"name", s.name}, {"x", s.x}, {"y", s.y}});
-        curves.push_back(
-            {{"equation", curve.equation}, {"title", curve.title}, {"xLabel", curve.xLabel}, {"yLabel", curve.yLabel}, {"series", std::move(series)}});
+        for (const ChartSeries& s : chart.series) series.push_back({{"name", s.label}, {"x", s.x}, {"y", s.y}});
+        curves.push_back({{"equation", equation}, {"title", chart.title}, {"xLabel", chart.xLabel}, {"yLabel", chart.yLabel}, {"series", std::move(series)}});
     }
     return {{"checks", std::move(checks)}, {"trades", std::move(trades)}, {"curves", std::move(curves)}};
 }
@@ -101,9 +100,8 @@ Json equationsJson(const EquationReport& report)
 std::string curvesHtml(const EquationReport& report)
 {
     std::string html;
-    for (const EquationCurve& curve : report.curves) {
-        Chart chart{"Eq. " + curve.equation + ": " + curve.title, curve.xLabel, curve.yLabel, curve.logX, curve.logY, {}};
-        for (const EquationSeries& s : curve.series) chart.series.push_back({s.name, s.x, s.y});
+    for (auto [equation, chart] : report.curves) {
+        chart.title = "Eq. " + equation + ": " + chart.title;
         html += chartHtml(chart);
     }
     return html;
@@ -115,7 +113,8 @@ std::string verdictOf(const EquationReport& report)
     std::string first;
     for (const EquationCheck& c : report.checks)
         if (!c.holds() && ++broken == 1)
-            first = "Eq. " + c.equation + ", " + c.function + ": " + shortNumber(c.worst) + " against " + shortNumber(c.bound) + " (" + c.boundName + ")";
+            first =
+                "Eq. " + c.equation + ", " + c.function + ": " + shortNumber(c.worst) + " against " + shortNumber(c.bound.value) + " (" + c.bound.name + ")";
     const std::string count = std::to_string(report.checks.size());
     if (broken == 0) return "Equations: all " + count + " bounds hold.";
     return "Equations: " + std::to_string(broken) + " of " + count + " bounds are broken; the first is " + first + ".";

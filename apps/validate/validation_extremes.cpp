@@ -68,7 +68,7 @@ Json extremesJson(const ExtremesReport& report)
                            {"detail", r.detail}});
     for (const ExtremeCurve& c : report.curves) {
         Json series = Json::array();
-        for (const CurveSeries& s : c.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}});
+        for (const ChartSeries& s : c.series) series.push_back({{"label", s.label}, {"x", s.x}, {"y", s.y}});
         curves.push_back({{"name", c.name},
                           {"xLabel", c.xLabel},
                           {"yLabel", c.yLabel},
@@ -85,8 +85,7 @@ std::string curvesHtml(const ExtremesReport& report)
 {
     std::string html;
     for (const ExtremeCurve& curve : report.curves) {
-        Chart chart{curve.name + ": " + curve.sentence, curve.xLabel, curve.yLabel, curve.logX, curve.logY, {}};
-        for (const CurveSeries& s : curve.series) chart.series.push_back({s.label, s.x, s.y});
+        Chart chart{curve.name + ": " + curve.sentence, curve.xLabel, curve.yLabel, true, true, curve.series};
         if (!curve.series.empty() && !curve.series.front().x.empty() && curve.bound > 0.0) {
             const std::vector<double>& x = curve.series.front().x;
             chart.series.push_back({.label = "bound", .x = {x.front(), x.back()}, .y = {curve.bound, curve.bound}, .dashed = true});

@@ -30,7 +30,8 @@ struct MemoryQuestion {
     const Settings& settings;
     int width = 0, height = 0;
     Unknowns unknowns = Unknowns::found;
-    const std::vector<PassReport>* rendered = nullptr;  ///< of this very frame, where there is one: then nothing needs to be found
+    std::vector<int> layersKept = {};                   ///< of each light's LRSM, where known: then they need not be found
+    const std::vector<PassReport>* rendered = nullptr;  ///< of this very frame, where there is one: the same
 };
 
 /// The voxels: their bits and mips, or the bits alone; none where neither is read.

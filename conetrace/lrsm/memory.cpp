@@ -17,6 +17,7 @@ std::string passOf(std::size_t light)
 
 int layersOf(const MemoryQuestion& question, std::size_t light)
 {
+    if (light < question.layersKept.size()) return question.layersKept[light];
     if (question.rendered)
         for (const PassReport& report : *question.rendered)
             if (report.name == passOf(light)) return static_cast<int>(counterSum(report.counters, "layers_kept"));

@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/math.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,12 +83,8 @@ class JsonReader {
     }
     void allowOnly(std::initializer_list<std::string_view> keys) const
     {
-        for (const auto& [key, unused] : object().items()) {
-            if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-            std::string known;
-            for (const std::string_view each : keys) known += (known.empty() ? "" : ", ") + std::string(each);
-            fail("unknown key " + Json(key).dump() + "; known: " + known);
-        }
+        for (const auto& [key, unused] : object().items())
+            if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail("unknown key " + Json(key).dump() + "; known: " + joined(keys));
     }
 
     std::vector<JsonReader> items() const

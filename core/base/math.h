@@ -58,12 +58,4 @@ inline bool isFinite(const Vec3& v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Smallest power of two >= `value` (value >= 1).
-inline std::uint32_t nextPowerOfTwo(std::uint32_t value)
-{
-    std::uint32_t power = 1;
-    while (power < value) power *= 2;
-    return power;
-}
-
 }  // namespace lrsm

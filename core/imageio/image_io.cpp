@@ -3,6 +3,7 @@
 #include "core/base/elementary.h"
 #include "core/base/errors.h"
 #include "core/base/formats.h"
+#include "core/base/text.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -46,9 +47,8 @@ void takeSize(LayeredImage& image, int width, int height)
 const ImageLayer& need(const LayeredImage& image, const std::string& name, const std::string& place)
 {
     if (const ImageLayer* layer = image.find(name)) return *layer;
-    std::string known;
-    for (const ImageLayer& layer : image.layers) known += (known.empty() ? "" : ", ") + (layer.name.empty() ? "(unnamed)" : layer.name);
-    throw InputError(place, "has no layer \"" + name + "\"; it has " + known);
+    const auto nameOf = [](const ImageLayer& layer) { return layer.name.empty() ? "(unnamed)" : layer.name; };
+    throw InputError(place, "has no layer \"" + name + "\"; it has " + joined(image.layers, nameOf));
 }
 
 /// "indirect.diffuse.R" belongs to the layer "indirect.diffuse".

@@ -9,7 +9,7 @@ namespace lrsm {
 
 struct ChartSeries {
     std::string label;
-    std::vector<double> x, y;             ///< of equal length; a point that is not finite (or not positive on a logarithmic axis) is left out
+    std::vector<double> x = {}, y = {};   ///< of equal length; a point that is not finite (or not positive on a logarithmic axis) is left out
     std::vector<std::string> hover = {};  ///< a text a point, shown under the pointer; lines end with "\n"; may be empty
     bool line = true;                     ///< joined in order of x; else points alone
     bool dashed = false;
@@ -22,7 +22,7 @@ struct ChartSeries {
 struct Chart {
     std::string title, xLabel, yLabel;
     bool logX = false, logY = false;
-    std::vector<ChartSeries> series;
+    std::vector<ChartSeries> series = {};
 };
 
 /// A figure of at most 620 x 400 CSS pixels; several in a row flow side by side. The page's script must hold chartScript().

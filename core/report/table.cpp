@@ -101,11 +101,23 @@ std::string exactNumber(double value)
     return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
+std::string numberText(int digits, double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
 std::string shortNumber(double value)
 {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.3g", value);
-    return digits;
+    return numberText(3, value);
+}
+
+std::string fixedNumber(int digits, double value)
+{
+    char text[340];  // of the largest double
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
 }
 
 }  // namespace lrsm

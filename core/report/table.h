@@ -28,7 +28,11 @@ std::string markdownTable(const ReportTable& table);
 /// The shortest digits that restore the value's bits; "nan", "inf".
 std::string exactNumber(double value);
 
-/// Three significant digits, for people: "0.0123", "1.2e-07", "0".
+/// So many significant digits at the most, for people: "0.0123", "1.2e-07", "0".
+std::string numberText(int digits, double value);
+/// Three of them.
 std::string shortNumber(double value);
+/// So many digits behind the point.
+std::string fixedNumber(int digits, double value);
 
 }  // namespace lrsm

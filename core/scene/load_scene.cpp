@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/float_state.h"
+#include "core/base/text.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/defaults.h"
@@ -25,9 +26,7 @@ std::string lowerCaseExtension(const std::string& path)
 
 [[noreturn]] void failUnknown(const std::string& place)
 {
-    std::string names;
-    for (const BuiltinSceneInfo& info : builtinScenes()) names += (names.empty() ? "" : ", ") + info.name;
-    throw InputError(place, "there is no such file, and the built-in scenes are: " + names);
+    throw InputError(place, "there is no such file, and the built-in scenes are: " + joined(builtinScenes(), &BuiltinSceneInfo::name));
 }
 
 /// A built-in or a glTF file; `place` is where its name was given.

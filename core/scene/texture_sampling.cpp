@@ -1,6 +1,6 @@
 #include "core/scene/texture_sampling.h"
 
-#include "core/base/elementary.h"
+#include "core/base/formats.h"
 
 #include <array>
 
@@ -11,10 +11,7 @@ namespace {
 std::array<float, 256> linearFromSrgbTable()
 {
     std::array<float, 256> table{};
-    for (int i = 0; i < 256; ++i) {
-        const double c = double(i) / 255.0;
-        table[std::size_t(i)] = float(c <= 0.04045 ? c / 12.92 : power((c + 0.055) / 1.055, 2.4));
-    }
+    for (int i = 0; i < 256; ++i) table[std::size_t(i)] = linearFromSrgb8(static_cast<std::uint8_t>(i));
     return table;
 }
 const std::array<float, 256> kLinearFromSrgb = linearFromSrgbTable();

@@ -1,3 +1,4 @@
+#include "core/base/text.h"
 #include "core/settings/settings_table.h"
 
 #include "core/base/errors.h"
@@ -108,12 +109,9 @@ std::vector<std::string> presetNames()
 
 Settings preset(const std::string& name)
 {
-    std::string known;
-    for (const Preset& preset : presets()) {
+    for (const Preset& preset : presets())
         if (preset.info.name == name) return preset.make();
-        known += (known.empty() ? "" : ", ") + preset.info.name;
-    }
-    throw InputError("preset \"" + name + "\"", "there is none of this name; the presets are " + known);
+    throw InputError("preset \"" + name + "\"", "there is none of this name; the presets are " + joined(presetNames()));
 }
 
 std::string settingsMarkdown()

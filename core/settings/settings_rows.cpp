@@ -7,46 +7,18 @@ namespace lrsm {
 
 namespace {
 
-/// The struct of settings that a field is of.
-template <class Stage>
-auto& stageIn(auto& settings)
-{
-    if constexpr (std::is_same_v<Stage, VoxelSettings>)
-        return settings.voxel;
-    else if constexpr (std::is_same_v<Stage, RsmSettings>)
-        return settings.rsm;
-    else if constexpr (std::is_same_v<Stage, LayerSettings>)
-        return settings.layers;
-    else if constexpr (std::is_same_v<Stage, DirectSettings>)
-        return settings.direct;
-    else if constexpr (std::is_same_v<Stage, ConeSetSettings>)
-        return settings.cones.set;
-    else if constexpr (std::is_same_v<Stage, MarchSettings>)
-        return settings.cones.march;
-    else if constexpr (std::is_same_v<Stage, LrsmGatherSettings>)
-        return settings.cones.gather;
-    else if constexpr (std::is_same_v<Stage, SpecularSettings>)
-        return settings.cones.specular;
-    else
-        return settings.force;
-}
-
-template <class Stage>
-constexpr std::string_view stageName()
-{
-    if constexpr (std::is_same_v<Stage, VoxelSettings>)
-        return "voxel";
-    else if constexpr (std::is_same_v<Stage, RsmSettings>)
-        return "rsm";
-    else if constexpr (std::is_same_v<Stage, LayerSettings>)
-        return "layers";
-    else if constexpr (std::is_same_v<Stage, DirectSettings>)
-        return "direct";
-    else if constexpr (std::is_same_v<Stage, ForceSettings>)
-        return "force";
-    else
-        return "cones";
-}
+/// Where each struct of settings lies, and the stage that it belongs to; the pointer only names the struct.
+struct Places {
+    static auto of(auto& s, VoxelSettings*) { return std::pair(&s.voxel, "voxel"); }
+    static auto of(auto& s, RsmSettings*) { return std::pair(&s.rsm, "rsm"); }
+    static auto of(auto& s, LayerSettings*) { return std::pair(&s.layers, "layers"); }
+    static auto of(auto& s, DirectSettings*) { return std::pair(&s.direct, "direct"); }
+    static auto of(auto& s, ConeSetSettings*) { return std::pair(&s.cones.set, "cones"); }
+    static auto of(auto& s, MarchSettings*) { return std::pair(&s.cones.march, "cones"); }
+    static auto of(auto& s, LrsmGatherSettings*) { return std::pair(&s.cones.gather, "cones"); }
+    static auto of(auto& s, SpecularSettings*) { return std::pair(&s.cones.specular, "cones"); }
+    static auto of(auto& s, ForceSettings*) { return std::pair(&s.force, "force"); }
+};
 
 template <class Member>
 struct MemberOf;
@@ -58,11 +30,11 @@ struct MemberOf<Value Stage::*> {
 // One accessor pair a field, from its member pointer.
 template <auto Field>
 struct Access {
-    using Stage = typename MemberOf<decltype(Field)>::Struct;
-    static double get(const Settings& settings) { return static_cast<double>(stageIn<Stage>(settings).*Field); }
+    static auto place(auto& settings) { return Places::of(settings, static_cast<typename MemberOf<decltype(Field)>::Struct*>(nullptr)); }
+    static double get(const Settings& settings) { return static_cast<double>(place(settings).first->*Field); }
     static void set(Settings& settings, double value)
     {
-        auto& field = stageIn<Stage>(settings).*Field;
+        auto& field = place(settings).first->*Field;
         field = static_cast<std::remove_reference_t<decltype(field)>>(value);
     }
 };
@@ -74,8 +46,9 @@ struct Text {
 template <auto Field>
 SettingRow row(const Text& text, SettingKind kind, SettingRange range, std::vector<std::string_view> choices = {})
 {
+    const Settings any;
     return {.key = text.key,
-            .stage = stageName<typename Access<Field>::Stage>(),
+            .stage = Access<Field>::place(any).second,
             .unit = text.unit,
             .meaning = text.meaning,
             .source = text.source,

@@ -1,6 +1,7 @@
 #include "core/settings/settings_table.h"
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/settings/settings_rows.h"
 
 #include <algorithm>
@@ -27,23 +28,6 @@ bool parseWhole(const std::string& text, Number& value)
     return error == std::errc() && end == text.data() + text.size();
 }
 
-/// Levenshtein distance: how many letters to change, add or drop.
-std::size_t editDistance(const std::string& a, const std::string& b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-            diagonal = above;
-        }
-    }
-    return row[b.size()];
-}
-
 [[noreturn]] void refuse(const SettingRow& row, const std::string& value)
 {
     throw InputError("setting " + std::string(row.key) + "=" + value, "must be " + allowedText(row));
@@ -55,11 +39,7 @@ std::string allowedText(const SettingRow& row)
 {
     switch (row.kind) {
     case SettingKind::flag: return "true | false";
-    case SettingKind::choice: {
-        std::string text;
-        for (const std::string_view name : row.choices) text += (text.empty() ? "" : " | ") + std::string(name);
-        return text;
-    }
+    case SettingKind::choice: return joined(row.choices, {}, " | ");
     case SettingKind::whole:
         return std::to_string(int(row.range.min)) + " .. " + std::to_string(int(row.range.max)) + (row.range.powerOfTwo ? ", power of two" : "");
     case SettingKind::real: break;
@@ -126,7 +106,7 @@ const SettingRow& findRow(const std::string& key, const std::string& place)
         if (key.size() > 64) break;  // no misspelling
         // An abbreviation ("filter" for irradiance_filter) is as near as a misspelling.
         const bool part = key.size() >= 4 && row.key.find(key) != std::string_view::npos;
-        const std::size_t distance = part ? 1 : editDistance(key, std::string(row.key));
+        const std::size_t distance = part ? 1 : editDistance(key, row.key);
         if (distance < nearestDistance) nearest = &row, nearestDistance = distance;
     }
     throw InputError(

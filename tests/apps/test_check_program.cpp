@@ -90,7 +90,7 @@ TEST_CASE("check program: bad usage and bad input are one line and exit code 2",
     }
 }
 
-TEST_CASE("check program: --bless makes the candidate the golden and says why in it; without a change nothing is written", "[apps][check]")
+TEST_CASE("check program: --bless makes the candidate the golden and says why in it, without a change nothing is written", "[apps][check]")
 {
     const Sandbox box;
     makeGoldenAndCandidate(box);

@@ -117,7 +117,7 @@ TEST_CASE("program: help, version and the lists are answered with exit code 0", 
     CHECK(sandbox.empty());
 }
 
-TEST_CASE("render: every file and layer is there; frame.json repeats the frame; neither threads nor the frame's analysis change a bit", "[apps][determinism]")
+TEST_CASE("render: every file and layer is there, frame.json repeats the frame, neither threads nor the frame's analysis change a bit", "[apps][determinism]")
 {
     const Sandbox sandbox;
     const Outcome first = sandbox.run("render cornell-box -o a/deep --quiet" + kTiny);
@@ -155,7 +155,7 @@ TEST_CASE("render: every file and layer is there; frame.json repeats the frame; 
     }
 }
 
-TEST_CASE("render --visibility, --radiance: named in frame.json; by default the ordinary frame to the bit", "[apps][split]")
+TEST_CASE("render --visibility, --radiance: named in frame.json, by default the ordinary frame to the bit", "[apps][split]")
 {
     const Sandbox box;
     REQUIRE(box.run("render cornell-box -o plain" + kTiny).code == 0);

@@ -64,7 +64,7 @@ TEST_CASE("a footprint outside the map is told from one that reaches in: it samp
     CHECK(outside < 19000);
 }
 
-TEST_CASE("levels are clamped to the chain; NaN is the base", "[lrsm][sampler]")
+TEST_CASE("levels are clamped to the chain, NaN is the base", "[lrsm][sampler]")
 {
     const Lrsm lrsm = smallLrsm(39);
     const auto at = [&](float level) { return sampleLayer(lrsm, 0, 0.4f, 0.6f, level, FilterFraction::exact).radiance; };

@@ -152,7 +152,7 @@ TEST_CASE("light projection: lights inside, outside and facing away, and scenes 
             }
 }
 
-TEST_CASE("light projection: behind a spot light nothing is valid; the direction to the light is the light's own", "[lrsm][projection]")
+TEST_CASE("light projection: behind a spot light nothing is valid, the direction to the light is the light's own", "[lrsm][projection]")
 {
     Light light;
     light.type = LightType::spot;

@@ -81,7 +81,7 @@ TEST_CASE("empty layers are dropped, counted, and hold nothing when kept", "[lrs
     }
 }
 
-TEST_CASE("a layer of texels that send no light is dropped; one lit texel keeps it whole", "[lrsm]")
+TEST_CASE("a layer of texels that send no light is dropped, one lit texel keeps it whole", "[lrsm]")
 {
     Rsm rsm = flatRsm(16, 0.1f);
     for (int x = 0; x < 16; ++x) rsm.depthLinear.at(x, 3) = 0.9f, rsm.texels.at(x, 3).radiance = Vec3(0.0f);

@@ -165,7 +165,7 @@ TEST_CASE("RSM: an empty scene and a light that sees nothing give an empty, fini
         }
 }
 
-TEST_CASE("RSM: predicted bytes are the measured ones; any number of threads gives the same bits", "[lrsm][rsm]")
+TEST_CASE("RSM: predicted bytes are the measured ones, any number of threads gives the same bits", "[lrsm][rsm]")
 {
     const Light light = spotLight({1, 4, 2}, {0, 0, 0}, Vec3(5, 3, 2), 0.2f, 0.7f);
     std::vector<Rsm> maps;

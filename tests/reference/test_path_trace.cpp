@@ -236,7 +236,7 @@ TEST_CASE("light scaled by a power of two scales every bit of the picture", "[re
     for (std::size_t i = 0; i < a.irradiance.texels.size(); ++i) REQUIRE(a.irradiance.texels[i] * 0x1p-40f == b.irradiance.texels[i]);
 }
 
-TEST_CASE("more bounces never take light away; a specular part changes no irradiance of one bounce", "[reference][invariance]")
+TEST_CASE("more bounces never take light away, a specular part changes no irradiance of one bounce", "[reference][invariance]")
 {
     const Scene scene = *makeBuiltinScene("cornell-glossy");
     const auto mean = [](const Image<Vec3>& picture) {

@@ -46,7 +46,7 @@ TEST_CASE("ranges joined in any order give the bits of the whole, also where the
     CHECK(joined.ranges == std::vector<SampleRange>{{0, 100}});
 }
 
-TEST_CASE("a gap stays visible and its blocks stay cut; an overlap is refused", "[reference][sums]")
+TEST_CASE("a gap stays visible and its blocks stay cut, an overlap is refused", "[reference][sums]")
 {
     SampleSums sums = sumsOf({0, 20});
     mergeSums(sums, sumsOf({21, 40}), "test");
@@ -78,7 +78,7 @@ TEST_CASE("mean and variance of the mean agree with the textbook on the same sam
     CHECK(std::isnan(estimate(sumsOf({0, 15}), 0).variance));
 }
 
-TEST_CASE("a checkpoint survives the way through its bytes; damage of any byte is found", "[reference][checkpoint]")
+TEST_CASE("a checkpoint survives the way through its bytes, damage of any byte is found", "[reference][checkpoint]")
 {
     Checkpoint checkpoint{{{"scene", "abc"}, {"size", "1x1"}}, 0.25, {}};
     checkpoint.state.target = {13, 100};

@@ -8,7 +8,7 @@
 
 using namespace lrsm;
 
-TEST_CASE("a wall keeps its opacity across it: directional and coverage; the mean of the paper halves at each level", "[voxel][pyramid]")
+TEST_CASE("a wall keeps its opacity across it: directional and coverage, the mean of the paper halves at each level", "[voxel][pyramid]")
 {
     const int n = 32;
     const BitGrid wall = gridOf(n, [](int x, int, int) { return x == 16 || x == 17; });

@@ -47,7 +47,7 @@ struct Random : SearchRandom {
 
 }  // namespace
 
-TEST_CASE("the order of operations is fixed: x, y, z, level, then the division by 255; bit for bit", "[voxel][sampler][determinism]")
+TEST_CASE("the order of operations is fixed: x, y, z, level, then the division by 255, bit for bit", "[voxel][sampler][determinism]")
 {
     const auto lerp = [](float a, float b, float f) { return a + f * (b - a); };
     for (const Kind& kind : allKinds()) {
@@ -85,7 +85,7 @@ TEST_CASE("the order of operations is fixed: x, y, z, level, then the division b
     }
 }
 
-TEST_CASE("a texel's centre gives its stored value exactly; whole levels equal sampleLevel", "[voxel][sampler]")
+TEST_CASE("a texel's centre gives its stored value exactly, whole levels equal sampleLevel", "[voxel][sampler]")
 {
     for (const Kind& kind : allKinds()) {
         const OpacityPyramid pyramid = pyramidOf(kind, randomGrid(32, 0.1, 5));

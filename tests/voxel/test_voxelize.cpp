@@ -295,7 +295,7 @@ TEST_CASE("a wall on a voxel boundary belongs to both sides in conservative", "[
     forVoxels(8, [&](int x, int y, int z) { CHECK(bits.occupied(x, y, z) == (z == 2 || z == 3)); });
 }
 
-TEST_CASE("shifting the grid by whole voxels shifts the voxels; scaling the world by 2^k changes none", "[voxel][invariance]")
+TEST_CASE("shifting the grid by whole voxels shifts the voxels, scaling the world by 2^k changes none", "[voxel][invariance]")
 {
     const auto mode = GENERATE(Voxelization::conservative, Voxelization::thin, Voxelization::raster);
     const int n = 32;
@@ -361,7 +361,7 @@ TEST_CASE("triangle order and thread count change no bit", "[voxel][determinism]
     CHECK(voxelizeTriangles(reversed, grid, mode).bricks == serial.bricks);
 }
 
-TEST_CASE("triangles with a non-finite vertex are dropped; huge ones still cut the grid where they pass", "[voxel][robust]")
+TEST_CASE("triangles with a non-finite vertex are dropped, huge ones still cut the grid where they pass", "[voxel][robust]")
 {
     const VoxelGrid grid = unitFrame(8);
     const float nan = std::numeric_limits<float>::quiet_NaN();

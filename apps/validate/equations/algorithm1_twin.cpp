@@ -10,11 +10,6 @@ double tent(double distance)
     return std::max(0.0, 1.0 - std::abs(distance));
 }
 
-double dot(const Vec3& a, const DVec3& b)
-{
-    return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
-}
-
 double fractionOf(double t, FilterFraction fraction, double& toTie)
 {
     if (fraction == FilterFraction::exact) return t;
@@ -28,14 +23,14 @@ double fractionOf(double t, FilterFraction fraction, double& toTie)
 Projected project(const LightProjection& projection, const DVec3& pWorld)
 {
     const DVec3 d = pWorld - DVec3(projection.position);
-    const double x = dot(projection.right, d), y = dot(projection.up, d), z = dot(projection.forward, d);
+    const double x = glm::dot(DVec3(projection.right), d), y = glm::dot(DVec3(projection.up), d), z = glm::dot(DVec3(projection.forward), d);
     const double range = double(projection.depthFar) - double(projection.depthNear);
     Projected p;
     double half = double(projection.halfWidth), distance = z;
     if (projection.type != LightType::directional) {
         if (!(z > 0.0)) return p;
         half *= z;
-        distance = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+        distance = glm::length(d);
     }
     p.valid = true;
     p.u = (x + half) / (2.0 * half);
@@ -140,7 +135,7 @@ Outgoing algorithm1(const Lrsm& lrsm, const Projected& p, const ConeSample& cone
         if (!(f > 0.0)) continue;
         const Filtered t = filtered(layer);
         if (!(t.depthAlpha > 0.0 && t.normalAlpha > 0.0)) continue;
-        double n = (t.normal.x * double(cone.toReceiver.x) + t.normal.y * double(cone.toReceiver.y) + t.normal.z * double(cone.toReceiver.z)) / t.normalAlpha;
+        double n = glm::dot(t.normal, DVec3(cone.toReceiver)) / t.normalAlpha;
         if (settings.gather.backface == Backface::step) result.toJump = std::min(result.toJump, std::abs(n));
         if (!(n > 0.0)) continue;
         if (settings.gather.backface == Backface::step) n = 1.0;

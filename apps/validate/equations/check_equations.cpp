@@ -2,9 +2,9 @@
 
 #include "apps/validate/equations/check_run.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace lrsm {
 namespace {
@@ -42,28 +42,6 @@ bool EquationReport::holds() const
     return !checks.empty() && std::all_of(checks.begin(), checks.end(), [](const EquationCheck& check) { return check.holds(); });
 }
 
-std::string equationsMarkdown(const EquationReport& report)
-{
-    const auto number = [](double value) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.2g", value);
-        return std::string(text);
-    };
-    // A | inside a cell must be escaped.
-    const auto cell = [](std::string text) {
-        for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-        return text;
-    };
-    std::string table = "| equation | function | error | bound | | measured |\n| --- | --- | --- | --- | --- | --- |\n", exact;
-    for (const EquationCheck& check : report.checks)
-        if (check.boundName == "exact")
-            exact += (exact.empty() ? "Exact: " : "; ") + check.function + " (" + check.equation + ")";
-        else
-            table += "| " + check.equation + " | " + cell(check.function) + " | " + cell(check.errorKind) + " | `" + check.boundName + "` | " +
-                     number(check.bound) + " | " + number(check.worst) + " |\n";
-    return table + "\n" + exact + ".\n";
-}
-
 std::vector<std::string> equationNames()
 {
     return {"1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "sec3", "sec5", "fig7", "table1", "base"};
@@ -72,11 +50,8 @@ std::vector<std::string> equationNames()
 EquationReport checkEquations(const EquationOptions& options)
 {
     const std::vector<std::string> names = equationNames();
-    if (options.equation && std::find(names.begin(), names.end(), *options.equation) == names.end()) {
-        std::string known;
-        for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-        throw InputError("equation \"" + *options.equation + "\"", "there is no check of this name; there are " + known);
-    }
+    if (options.equation && std::find(names.begin(), names.end(), *options.equation) == names.end())
+        throw InputError("equation \"" + *options.equation + "\"", "there is no check of this name; there are " + joined(names));
     const auto wanted = [&](const Group& group) {
         return !options.equation || std::find(group.equations.begin(), group.equations.end(), *options.equation) != group.equations.end();
     };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/report/chart.h"
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,22 +12,28 @@
 /// sampled (worst_case.h), with a fixed seed: the same figures on every run of one machine, times apart.
 namespace lrsm {
 
+/// A limit, and the constant that code, docs and tests share: "kPolynomialCdfMaxError".
+struct NamedBound {
+    const char* name = "";
+    double value = 0.0;
+};
+
 /// One function held against one oracle over one domain.
 struct EquationCheck {
-    std::string equation = {};   ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7"
-                                 ///< for cones, "base" for the elementary functions that all of them stand on
-    std::string function = {};   ///< "gaussianVisibility, polynomial"
-    std::string oracle = {};     ///< "50-digit erfc (Boost.Multiprecision)"
-    std::string domain = {};     ///< in words, with ranges
-    std::string boundName = {};  ///< the constant that code, docs and tests share: "kPolynomialCdfMaxError"
-    std::string errorKind = {};  ///< what the three numbers below are: "absolute", "relative", "ULP", "wrong results"
-    double bound = 0.0, worst = 0.0, meanError = 0.0;
+    std::string equation = {};  ///< number of the paper's equation ("12"); "sec5" for levels and footprints, "sec3" for voxels, "table1" for formats, "fig7"
+                                ///< for cones, "base" for the elementary functions that all of them stand on
+    std::string function = {};  ///< "gaussianVisibility, polynomial"
+    std::string oracle = {};    ///< "50-digit erfc (Boost.Multiprecision)"
+    std::string domain = {};    ///< in words, with ranges
+    std::string errorKind = "absolute";  ///< what the three numbers below are: "absolute", "relative", "ULP", "wrong results"
+    NamedBound bound = {};
+    double worst = 0.0, meanError = 0.0;
     std::string worstInput = {};  ///< the input of the worst case, in digits that restore its bits
     std::uint64_t evaluations = 0;
     double nanoseconds = 0.0;  ///< median time of a call; 0: not measured
 
     /// False also where the error is NaN or nothing was evaluated.
-    bool holds() const { return evaluations > 0 && worst <= bound; }
+    bool holds() const { return evaluations > 0 && worst <= bound.value; }
 };
 
 /// One end, or one point, of a choice of speed against accuracy: error beside time.
@@ -39,14 +47,9 @@ struct EquationTrade {
     std::size_t bytes = 0;     ///< that the choice holds: the table, or one texel
 };
 
-struct EquationSeries {
-    std::string name = {};
-    std::vector<double> x = {}, y = {};  ///< of one length
-};
 struct EquationCurve {
-    std::string equation = {}, title = {}, xLabel = {}, yLabel = {};
-    bool logX = false, logY = false;
-    std::vector<EquationSeries> series = {};
+    std::string equation;
+    Chart chart;
 };
 
 struct EquationReport {
@@ -63,9 +66,6 @@ struct EquationOptions {
     /// Called before each check with its function and the fraction done so far.
     std::function<void(const std::string&, double)> progress;
 };
-
-/// The checks as docs/equations.md has them: a table, and a line of those that are exact. A test holds all but what was measured against the page.
-std::string equationsMarkdown(const EquationReport& report);
 
 /// Names that EquationOptions::equation takes, in the report's order.
 std::vector<std::string> equationNames();

@@ -21,7 +21,25 @@ class CheckRun {
     /// Draws of a check that makes a whole map, grid or cone for each.
     std::uint64_t draws(double atFullEffort) const { return scaled(atFullEffort, 1.0); }
 
-    bool measuresSpeed() const { return options_.measureSpeed; }
+    /// Median time of call(i), i running over [0, inputs), in nanoseconds; 0 where speed is not measured. What the calls return is summed into a volatile, so
+    /// that none is left out.
+    template <class Call>
+    double time(std::size_t inputs, const Call& call) const
+    {
+        if (!options_.measureSpeed) return 0.0;
+        constexpr int kRuns = 9;
+        std::array<double, kRuns> times{};
+        volatile double sink = 0.0;
+        for (double& time : times) {
+            const auto start = std::chrono::steady_clock::now();
+            double sum = 0.0;
+            for (std::size_t i = 0; i < inputs; ++i) sum += static_cast<double>(call(i));
+            sink = sink + sum;
+            time = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(inputs);
+        }
+        std::nth_element(times.begin(), times.begin() + kRuns / 2, times.end());
+        return times[kRuns / 2];
+    }
 
     template <class T, std::size_t N>
     void add(EquationCheck check, const Worst<T, N>& worst, const std::string& worstInput)
@@ -43,25 +61,7 @@ class CheckRun {
 /// A row in which every result must be the oracle's.
 inline EquationCheck exactCheck(const std::string& equation, const std::string& function, const std::string& oracle, const std::string& domain)
 {
-    return {.equation = equation, .function = function, .oracle = oracle, .domain = domain, .boundName = "exact", .errorKind = "wrong results"};
-}
-
-/// Median time of call(i), i running over [0, inputs), in nanoseconds. What the calls return is summed into a volatile, so that none is left out.
-template <class Call>
-double medianNanoseconds(std::size_t inputs, const Call& call)
-{
-    constexpr int kRuns = 9;
-    std::array<double, kRuns> times{};
-    volatile double sink = 0.0;
-    for (double& time : times) {
-        const auto start = std::chrono::steady_clock::now();
-        double sum = 0.0;
-        for (std::size_t i = 0; i < inputs; ++i) sum += static_cast<double>(call(i));
-        sink = sink + sum;
-        time = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(inputs);
-    }
-    std::nth_element(times.begin(), times.begin() + kRuns / 2, times.end());
-    return times[kRuns / 2];
+    return {.equation = equation, .function = function, .oracle = oracle, .domain = domain, .errorKind = "wrong results", .bound = {"exact", 0.0}};
 }
 
 /// The groups, each in a file of its own.

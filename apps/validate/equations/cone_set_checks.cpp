@@ -29,9 +29,7 @@ void checkSix(CheckRun& run)
              .function = "makeConeSet, the paper's six",
              .oracle = "1/4 and 3/20, 60 degrees, axes by sine and cosine",
              .domain = "all six",
-             .boundName = "kConeSetMaxError",
-             .errorKind = "absolute",
-             .bound = double(kConeSetMaxError)},
+             .bound = {"kConeSetMaxError", double(kConeSetMaxError)}},
             worst, "cone " + exactText(worst.input[0]));
 }
 
@@ -74,9 +72,8 @@ void checkAll(CheckRun& run)
              .function = "makeConeSet, rings of any count",
              .oracle = "integral of the cosine over each ring",
              .domain = "1 .. 256 cones, both estimators, all rotations",
-             .boundName = "kConeSetMaxError",
              .errorKind = "absolute weight; tenth of angles and sums",
-             .bound = double(kConeSetMaxError)},
+             .bound = {"kConeSetMaxError", double(kConeSetMaxError)}},
             worst,
             "count = " + std::to_string(1 + static_cast<int>(worst.input[0]) % 256) + ", case " + std::to_string(static_cast<int>(worst.input[0]) / 256));
 
@@ -106,9 +103,7 @@ void checkAll(CheckRun& run)
              .function = "makeConeSet, strata",
              .oracle = "Malley's disc with a Hammersley set, in double",
              .domain = "1 .. 64 cones, all 16 rotations",
-             .boundName = "kConeSetMaxError",
-             .errorKind = "absolute",
-             .bound = double(kConeSetMaxError)},
+             .bound = {"kConeSetMaxError", double(kConeSetMaxError)}},
             strata, "count = " + std::to_string(1 + static_cast<int>(strata.input[0])));
 }
 
@@ -160,9 +155,8 @@ void checkSpecular(CheckRun& run)
              .function = "specularTanHalf",
              .oracle = "tan(2 atan(roughness^2)), at most tan 60 degrees; tan of half the fixed angle",
              .domain = "roughness 0 .. 1; 1 .. 160 degrees",
-             .boundName = "kSpecularTanMaxError",
              .errorKind = "absolute; relative if fixed",
-             .bound = double(kSpecularTanMaxError)},
+             .bound = {"kSpecularTanMaxError", double(kSpecularTanMaxError)}},
             worst, inputText<float, 1>({"roughness"}, worst.input));
 }
 

@@ -56,11 +56,9 @@ void checkHalf(CheckRun& run)
                  .function = std::string("halfFromFloat, ") + (rounding == HalfRounding::d3d ? "toward zero" : "nearest even"),
                  .oracle = "division by the spacing, in double",
                  .domain = "about all halves and their middles; 2^-30 .. 2^20",
-                 .boundName = "exact",
                  .errorKind = "wrong results",
-                 .bound = 0.0,
-                 .nanoseconds =
-                     run.measuresSpeed() ? medianNanoseconds(4096, [rounding](std::size_t i) { return halfFromFloat(0.01f * float(i), rounding); }) : 0.0},
+                 .bound = {"exact", 0.0},
+                 .nanoseconds = run.time(4096, [rounding](std::size_t i) { return halfFromFloat(0.01f * float(i), rounding); })},
                 beside, "x = " + at);
     }
     const auto special = exhaust(6, [](std::uint64_t i) {
@@ -114,10 +112,9 @@ void checkUnorm(CheckRun& run, const char* name, unsigned codes, double slack, c
              .function = std::string(name) + "FromFloat",
              .oracle = "scaling in double",
              .domain = "7 floats about each of the edges; [-2, 3]",
-             .boundName = slackName,
              .errorKind = "codes beyond one half",
-             .bound = slack,
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return encode(float(i) / 4096.0f); }) : 0.0},
+             .bound = {slackName, slack},
+             .nanoseconds = run.time(4096, [&](std::size_t i) { return encode(float(i) / 4096.0f); })},
             edges, "x = " + exactText(worstInput));
 }
 

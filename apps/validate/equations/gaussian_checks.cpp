@@ -32,10 +32,8 @@ void checkPhi(CheckRun& run, GaussianMethod method, int tableSize, const char* b
              .function = "NormalCdf, " + nameOf(method, tableSize),
              .oracle = "50-digit erfc (Boost.Multiprecision)",
              .domain = "any x; searched in [-40, 40]",
-             .boundName = boundName,
-             .errorKind = "absolute",
-             .bound = double(phi.maxError()),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return phi(-6.0f + 12.0f * float(i) / 4096.0f); }) : 0.0},
+             .bound = {boundName, double(phi.maxError())},
+             .nanoseconds = run.time(4096, [&](std::size_t i) { return phi(-6.0f + 12.0f * float(i) / 4096.0f); })},
             worst, inputText<float, 1>({"x"}, worst.input));
 }
 
@@ -67,9 +65,7 @@ void checkTableNodes(CheckRun& run)
              .function = "NormalCdf, table, against its own straight lines",
              .oracle = "interpolation of erfc's values in long double",
              .domain = "tables of 2 .. 4096 entries over [-5, 5], every node",
-             .boundName = "kTableCdfRoundingError",
-             .errorKind = "absolute",
-             .bound = double(kTableCdfRoundingError)},
+             .bound = {"kTableCdfRoundingError", double(kTableCdfRoundingError)}},
             worst, at);
 }
 
@@ -78,16 +74,13 @@ void checkExactDouble(CheckRun& run)
     const SearchSpace<double, 1> space{{{{-38.5, 9.0}}}, {{2.5}, {-2.5}, {0.0}, {-8.0}}};
     auto worst = findWorst(
         space, run.budget(4000), [](const auto& in) { return std::abs(oracle::phiError(in[0], normalCdfExact(in[0]))); }, 304);
-    run.add(
-        {.equation = "12",
-         .function = "normalCdfExact",
-         .oracle = "50-digit erfc (Boost.Multiprecision)",
-         .domain = "any x; searched in [-38.5, 9]",
-         .boundName = "kExactDoubleCdfMaxError",
-         .errorKind = "absolute",
-         .bound = kExactDoubleCdfMaxError,
-         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(1024, [](std::size_t i) { return normalCdfExact(-6.0 + 12.0 * double(i) / 1024.0); }) : 0.0},
-        worst, inputText<double, 1>({"x"}, worst.input));
+    run.add({.equation = "12",
+             .function = "normalCdfExact",
+             .oracle = "50-digit erfc (Boost.Multiprecision)",
+             .domain = "any x; searched in [-38.5, 9]",
+             .bound = {"kExactDoubleCdfMaxError", kExactDoubleCdfMaxError},
+             .nanoseconds = run.time(1024, [](std::size_t i) { return normalCdfExact(-6.0 + 12.0 * double(i) / 1024.0); })},
+            worst, inputText<double, 1>({"x"}, worst.input));
     const SearchSpace<double, 1> tail{{{{-37.0, 0.0}}}, {{-2.5}, {-37.0}}};
     worst = findWorst(
         tail, run.budget(2500), [](const auto& in) { return std::abs(oracle::phiRelativeError(in[0], normalCdfExact(in[0]))); }, 305);
@@ -95,9 +88,8 @@ void checkExactDouble(CheckRun& run)
              .function = "normalCdfExact, lower tail",
              .oracle = "50-digit erfc (Boost.Multiprecision)",
              .domain = "[-37, 0]",
-             .boundName = "kExactDoubleCdfMaxRelativeError",
              .errorKind = "relative",
-             .bound = kExactDoubleCdfMaxRelativeError},
+             .bound = {"kExactDoubleCdfMaxRelativeError", kExactDoubleCdfMaxRelativeError}},
             worst, inputText<double, 1>({"x"}, worst.input));
 }
 
@@ -124,7 +116,7 @@ double visibilityError(const NormalCdf& phi, const Window& w, float v)
 }
 
 /// Error and time of one choice; the same rows make the trade and its curves.
-EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSize, bool addRow, const char* boundName, double bound)
+EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSize, bool addRow, const NamedBound& bound)
 {
     const NormalCdf phi(method, tableSize);
     const auto error = [&](const std::array<float, 4>& in) {
@@ -135,8 +127,12 @@ EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSiz
     const Window at = windowOf(worst.input);
     worst.error = std::abs(oracle::visibilityError(at.mu, at.sigma2, at.zc, at.rc, double(gaussianVisibility(phi, at.mu, at.sigma2, at.zc, at.rc))));
 
-    EquationTrade trade{
-        .setting = "gaussian", .choice = nameOf(method, tableSize), .quantity = "V, Eq. 12", .bound = bound, .worst = worst.error, .meanError = worst.mean()};
+    EquationTrade trade{.setting = "gaussian",
+                        .choice = nameOf(method, tableSize),
+                        .quantity = "V, Eq. 12",
+                        .bound = bound.value,
+                        .worst = worst.error,
+                        .meanError = worst.mean()};
     trade.bytes = method == GaussianMethod::table ? std::size_t(tableSize) * sizeof(float) : 0;
     // Bias and time over the windows that cones have: sigma and radius of like size.
     std::vector<Window> usual(4096);
@@ -147,16 +143,12 @@ EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSiz
         trade.bias += (double(gaussianVisibility(phi, w.mu, w.sigma2, w.zc, w.rc)) - static_cast<double>(oracle::visibility(w.mu, w.sigma2, w.zc, w.rc))) /
                       double(usual.size());
     }
-    if (run.measuresSpeed())
-        trade.nanoseconds =
-            medianNanoseconds(usual.size(), [&](std::size_t i) { return gaussianVisibility(phi, usual[i].mu, usual[i].sigma2, usual[i].zc, usual[i].rc); });
+    trade.nanoseconds = run.time(usual.size(), [&](std::size_t i) { return gaussianVisibility(phi, usual[i].mu, usual[i].sigma2, usual[i].zc, usual[i].rc); });
     if (addRow)
         run.add({.equation = "12",
                  .function = "gaussianVisibility, " + trade.choice,
                  .oracle = "50-digit erfc (Boost.Multiprecision)",
                  .domain = "mu in [0, 1], sigma 2^-24 .. 1, r_c 2^-20 .. 2, an end of the window within 9 sigma of mu",
-                 .boundName = boundName,
-                 .errorKind = "absolute",
                  .bound = bound,
                  .nanoseconds = trade.nanoseconds},
                 worst, inputText<float, 4>({"mu", "sigma2", "zc", "rc"}, {at.mu, at.sigma2, at.zc, at.rc}));
@@ -182,23 +174,26 @@ void checkStep(CheckRun& run)
 
 void addCurves(CheckRun& run, const std::vector<EquationTrade>& tables)
 {
-    EquationCurve bySize{
-        .equation = "12", .title = "Eq. 12 by table: error against size", .xLabel = "entries", .yLabel = "largest error of V", .logX = true, .logY = true};
-    EquationSeries measured{.name = "measured"}, bound{.name = "bound"};
+    ChartSeries measured{.label = "measured"}, bound{.label = "bound"};
     for (const EquationTrade& trade : tables) {
         const double entries = double(trade.bytes) / sizeof(float);
         measured.x.push_back(entries), measured.y.push_back(trade.worst);
         bound.x.push_back(entries), bound.y.push_back(trade.bound);
     }
-    bySize.series = {measured, bound};
-    run.add(bySize);
+    run.add({"12",
+             {.title = "Eq. 12 by table: error against size",
+              .xLabel = "entries",
+              .yLabel = "largest error of V",
+              .logX = true,
+              .logY = true,
+              .series = {measured, bound}}});
 
-    EquationCurve byX{.equation = "12", .title = "error of Phi against x", .xLabel = "x", .yLabel = "|error|", .logX = false, .logY = true};
+    Chart byX{.title = "error of Phi against x", .xLabel = "x", .yLabel = "|error|", .logX = false, .logY = true};
     const NormalCdf choices[4] = {NormalCdf(GaussianMethod::table, 64), NormalCdf(GaussianMethod::table, 1024), NormalCdf(GaussianMethod::polynomial),
                                   NormalCdf(GaussianMethod::exact)};
     const char* const names[4] = {"table(64)", "table(1024)", "polynomial", "exact"};
     for (int c = 0; c < 4; ++c) {
-        EquationSeries series{.name = names[c]};
+        ChartSeries series{.label = names[c]};
         for (int i = 0; i < 240; ++i) {
             // The largest of 16 neighbours: rounding is noise, its envelope is a curve.
             const double x = -6.0 + 12.0 * (i + 0.5) / 240;
@@ -211,7 +206,7 @@ void addCurves(CheckRun& run, const std::vector<EquationTrade>& tables)
         }
         byX.series.push_back(series);
     }
-    run.add(byX);
+    run.add({"12", byX});
 }
 
 }  // namespace
@@ -227,10 +222,10 @@ void checkGaussian(CheckRun& run)
     std::vector<EquationTrade> tables;
     for (int entries = 64; entries <= 4096; entries *= 2) {
         const double bound = double(gaussianVisibilityMaxError(NormalCdf(GaussianMethod::table, entries)));
-        tables.push_back(checkVisibility(run, GaussianMethod::table, entries, entries == 1024, "gaussianVisibilityMaxError", bound));
+        tables.push_back(checkVisibility(run, GaussianMethod::table, entries, entries == 1024, {"gaussianVisibilityMaxError", bound}));
     }
-    checkVisibility(run, GaussianMethod::polynomial, 0, true, "gaussianVisibilityMaxError", double(gaussianVisibilityMaxError(NormalCdf())));
-    checkVisibility(run, GaussianMethod::exact, 0, true, "kExactCdfMaxError", double(kExactCdfMaxError));
+    checkVisibility(run, GaussianMethod::polynomial, 0, true, {"gaussianVisibilityMaxError", double(gaussianVisibilityMaxError(NormalCdf()))});
+    checkVisibility(run, GaussianMethod::exact, 0, true, {"kExactCdfMaxError", double(kExactCdfMaxError)});
     checkStep(run);
     addCurves(run, tables);
 }

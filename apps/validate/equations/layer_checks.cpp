@@ -61,9 +61,8 @@ void checkPartition(CheckRun& run)
              .function = "partition, edges",
              .oracle = "equal slices of the map's depths in double",
              .domain = "1 .. 16 x 1 .. 8 layers, overlap 0 .. 0.5, depths fitted or not, flat maps",
-             .boundName = "kPartitionMaxError",
              .errorKind = "absolute, linear depth",
-             .bound = double(kPartitionMaxError)},
+             .bound = {"kPartitionMaxError", double(kPartitionMaxError)}},
             worst, at);
     run.add(exactCheck("15", "partition, overlap is delta", "zMax of one layer - zMin of the next, in double", "as above"), overlaps, overlapAt);
 }
@@ -82,9 +81,8 @@ void checkFlatMap(CheckRun& run)
              .function = "partition, a map of one depth",
              .oracle = "2^-16 about it",
              .domain = "depths 2^-6 .. 2^-13",
-             .boundName = "exact",
              .errorKind = "over 2^-16",
-             .bound = 0.0},
+             .bound = {"exact", 0.0}},
             worst, "depth = 2^(-6 - " + exactText(worst.input[0]) + ")");
 }
 
@@ -116,12 +114,8 @@ void checkDecay(CheckRun& run)
              .function = "decay",
              .oracle = "smoothstep in double",
              .domain = "ranges of 1e-3 .. 1 in [0, 2], delta up to half of it, z_c in and beside it",
-             .boundName = "kDecayMaxError",
-             .errorKind = "absolute",
-             .bound = double(kDecayMaxError),
-             .nanoseconds = run.measuresSpeed()
-                                ? medianNanoseconds(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); })
-                                : 0.0},
+             .bound = {"kDecayMaxError", double(kDecayMaxError)},
+             .nanoseconds = run.time(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); })},
             worst,
             inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, r.depthMin + (r.depthMax - r.depthMin) * worst.input[3]}));
 
@@ -172,9 +166,7 @@ void checkDecaySum(CheckRun& run)
              .function = "decay, sum over the layers",
              .oracle = "1",
              .domain = "1 .. 16 depth layers, overlap 0 .. 0.5, every depth of the map",
-             .boundName = "kDecaySumMaxError",
-             .errorKind = "absolute",
-             .bound = double(kDecaySumMaxError)},
+             .bound = {"kDecaySumMaxError", double(kDecaySumMaxError)}},
             worst, at);
 }
 
@@ -225,15 +217,15 @@ std::string texelText(const LayerSettings& s, int layer, int lod, int x, int y)
 void checkMeans(CheckRun& run)
 {
     struct Row {
-        const char *equation, *function, *boundName;
-        double bound;
+        const char *equation, *function;
+        NamedBound bound;
         MapWorst worst = {};
         std::string at = {};
-    } rows[5] = {{"6", "buildLrsm, A R of every level", "kRadianceMeanMaxError", double(kRadianceMeanMaxError)},
-                 {"8", "buildLrsm, alpha n of every level", "kLayerNormalMaxError", double(kLayerNormalMaxError)},
-                 {"10", "buildLrsm, alpha z of every level", "kLayerDepthMaxError", double(kLayerDepthMaxError)},
-                 {"11", "buildLrsm, alpha z^2 of every level", "kLayerDepthMaxError", double(kLayerDepthMaxError)},
-                 {"13", "buildLrsm, alpha of every level", "exact", 0.0}};
+    } rows[5] = {{"6", "buildLrsm, A R of every level", {"kRadianceMeanMaxError", double(kRadianceMeanMaxError)}},
+                 {"8", "buildLrsm, alpha n of every level", {"kLayerNormalMaxError", double(kLayerNormalMaxError)}},
+                 {"10", "buildLrsm, alpha z of every level", {"kLayerDepthMaxError", double(kLayerDepthMaxError)}},
+                 {"11", "buildLrsm, alpha z^2 of every level", {"kLayerDepthMaxError", double(kLayerDepthMaxError)}},
+                 {"13", "buildLrsm, alpha of every level", {"exact", 0.0}}};
     MapWorst energy;
     std::string energyAt;
     SearchRandom random(531);
@@ -271,7 +263,6 @@ void checkMeans(CheckRun& run)
                  .function = row.function,
                  .oracle = "sums over the RSM's texels in double, membership as printed",
                  .domain = "random maps of 64^2 and 128^2, 1 .. 5 x 1 .. 4 layers, with and without overlap",
-                 .boundName = row.boundName,
                  .errorKind = row.equation == std::string("6") ? "relative to the largest radiance" : "absolute",
                  .bound = row.bound},
                 row.worst, row.at);
@@ -279,9 +270,8 @@ void checkMeans(CheckRun& run)
              .function = "buildLrsm, A R summed over the layers at the top level",
              .oracle = "the RSM's mean in double",
              .domain = "as above, without overlap",
-             .boundName = "kLayerSumMaxError",
              .errorKind = "relative",
-             .bound = double(kLayerSumMaxError)},
+             .bound = {"kLayerSumMaxError", double(kLayerSumMaxError)}},
             energy, energyAt);
 }
 

@@ -115,8 +115,8 @@ Aim aimOf(const std::array<float, 5>& in)
 }
 
 struct MarchRow {
-    const char *function, *domain, *boundName;
-    double bound;
+    const char *function, *domain;
+    NamedBound bound;
 };
 
 void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>& cases, const MarchRow& row)
@@ -155,9 +155,9 @@ void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>
         if (found.error > worst.error)
             at = "case " + std::to_string(index) + ", " + inputText<float, 5>({"height", "x", "cosine", "azimuth", "tanHalf"}, found.input);
         worst.include(found);
-        if (index == 0 && run.measuresSpeed()) {
+        if (index == 0) {
             const MarchSchedule schedule = makeSchedule(world.settings, 0.3f, reach);
-            nanoseconds = medianNanoseconds(16, [&](std::size_t i) { return kernel(aimOf({2.0f, float(i) * 0.2f, 0.8f, 1.0f, 0.3f}), schedule).radiance.x; });
+            nanoseconds = run.time(16, [&](std::size_t i) { return kernel(aimOf({2.0f, float(i) * 0.2f, 0.8f, 1.0f, 0.3f}), schedule).radiance.x; });
         }
         ++index;
     }
@@ -165,7 +165,6 @@ void checkMarch(CheckRun& run, Estimator estimator, const std::vector<MarchCase>
              .function = row.function,
              .oracle = slab ? "segments and emission integral in double (docs/pipeline.md)" : "the printed sum in double",
              .domain = row.domain,
-             .boundName = row.boundName,
              .errorKind = "absolute opacity; radiance relative to the largest",
              .bound = row.bound,
              .nanoseconds = nanoseconds},
@@ -187,16 +186,14 @@ void checkStepOpacity(CheckRun& run)
             return error / std::max(1.0, double(in[1]) * double(in[2]) / 16.0);  // 1 - a has been rounded to float
         },
         741);
-    run.add(
-        {.equation = "1",
-         .function = "stepOpacity",
-         .oracle = "1 - (1 - a)^(k length) by pow in double",
-         .domain = "a 1e-6 .. 1.5, length 0.01 .. 64, k 0.25 .. 4",
-         .boundName = "kStepOpacityMaxError",
-         .errorKind = "absolute / max(1, k length / 16)",
-         .bound = double(kStepOpacityMaxError),
-         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [&](std::size_t i) { return stepOpacity(float(i) / 8192.0f, 0.5f, settings); }) : 0.0},
-        worst, inputText<float, 3>({"a", "length", "k"}, worst.input));
+    run.add({.equation = "1",
+             .function = "stepOpacity",
+             .oracle = "1 - (1 - a)^(k length) by pow in double",
+             .domain = "a 1e-6 .. 1.5, length 0.01 .. 64, k 0.25 .. 4",
+             .errorKind = "absolute / max(1, k length / 16)",
+             .bound = {"kStepOpacityMaxError", double(kStepOpacityMaxError)},
+             .nanoseconds = run.time(4096, [&](std::size_t i) { return stepOpacity(float(i) / 8192.0f, 0.5f, settings); })},
+            worst, inputText<float, 3>({"a", "length", "k"}, worst.input));
     settings.march.opacity = OpacityModel::none;
     const auto plain =
         exhaust(300, [&](std::uint64_t i) { return stepOpacity(float(i) / 200.0f, 7.0f, settings) == std::min(float(i) / 200.0f, 1.0f) ? 0.0 : 1.0; });
@@ -219,9 +216,7 @@ void checkStepOpacity(CheckRun& run)
              .function = "transmittanceOf",
              .oracle = "exp(-k F), max(0, 1 - F) in double",
              .domain = "F 0 .. 20, k 0.25 .. 4",
-             .boundName = "kTransmittanceMaxError",
-             .errorKind = "absolute",
-             .bound = double(kTransmittanceMaxError)},
+             .bound = {"kTransmittanceMaxError", double(kTransmittanceMaxError)}},
             lost, inputText<float, 2>({"F", "k"}, lost.input));
 }
 
@@ -286,17 +281,15 @@ void checkSchedule(CheckRun& run)
              .function = "makeSchedule, mip level and tap width",
              .oracle = "log2 and exp2 in double",
              .domain = "tan of the half angle 0.01 .. 2, to 500 voxels",
-             .boundName = "kVoxelLevelMaxError",
              .errorKind = "levels; relative width",
-             .bound = double(kVoxelLevelMaxError)},
+             .bound = {"kVoxelLevelMaxError", double(kVoxelLevelMaxError)}},
             levels, levelAt);
     run.add({.equation = "1",
              .function = "makeSchedule, places and diameters",
              .oracle = "the recurrence in double",
              .domain = "as above, steps 0.1 .. 1 of the diameter",
-             .boundName = "kSchedulePlaceMaxError",
              .errorKind = "relative / number of steps",
-             .bound = double(kSchedulePlaceMaxError)},
+             .bound = {"kSchedulePlaceMaxError", double(kSchedulePlaceMaxError)}},
             places, placeAt);
 }
 
@@ -305,13 +298,14 @@ void checkSchedule(CheckRun& run)
 void checkCones(CheckRun& run)
 {
     const char* const domain = "6 sets of choices, fitted layers, a smooth opacity field, wavy lit maps under sun and spot; any cone from above";
-    checkMarch(run, Estimator::paper, casesOf(Estimator::paper), {"marchPaper", domain, "kMarchPaperMaxError", double(kMarchPaperMaxError)});
-    checkMarch(run, Estimator::slab, casesOf(Estimator::slab), {"marchSlab", domain, "kMarchSlabMaxError", double(kMarchSlabMaxError)});
+    checkMarch(run, Estimator::paper, casesOf(Estimator::paper), {"marchPaper", domain, {"kMarchPaperMaxError", double(kMarchPaperMaxError)}});
+    checkMarch(run, Estimator::slab, casesOf(Estimator::slab), {"marchSlab", domain, {"kMarchSlabMaxError", double(kMarchSlabMaxError)}});
     MarchCase wide = casesOf(Estimator::slab).front();
     wide.fitRanges = false;
-    checkMarch(
-        run, Estimator::slab, {wide},
-        {"marchSlab, one layer over 20 m", "as above; taps of 0.25 m and up: an 80th of the layer", "kMarchSlabWideMaxError", double(kMarchSlabWideMaxError)});
+    checkMarch(run, Estimator::slab, {wide},
+               {"marchSlab, one layer over 20 m",
+                "as above; taps of 0.25 m and up: an 80th of the layer",
+                {"kMarchSlabWideMaxError", double(kMarchSlabWideMaxError)}});
     checkStepOpacity(run);
     checkSchedule(run);
 }

@@ -5,16 +5,6 @@
 namespace lrsm::twin {
 namespace {
 
-double length(const DVec3& v)
-{
-    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
-double dotOf(const DVec3& a, const DVec3& b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 double phi(double x)
 {
     return static_cast<double>(oracle::phi(static_cast<long double>(x)));
@@ -65,7 +55,7 @@ DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, con
     if (!p.valid) return DVec3(0.0);
     const double range = double(lrsm.projection.depthFar) - double(lrsm.projection.depthNear), reach = (0.5 * step + 1.5 * tap) / range;
     DVec3 toLight = -DVec3(lrsm.projection.forward);
-    if (lrsm.projection.type != LightType::directional) toLight = (DVec3(lrsm.projection.position) - pWorld) / length(DVec3(lrsm.projection.position) - pWorld);
+    if (lrsm.projection.type != LightType::directional) toLight = glm::normalize(DVec3(lrsm.projection.position) - pWorld);
     const double lod = level(tap, p.texelSize, double(settings.gather.rsmLevelBias), double(settings.gather.rsmMinLevel));
 
     DVec3 sum(0.0);
@@ -77,10 +67,10 @@ DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, con
         const Filtered t = sample(lrsm, layer, p.u, p.v, lod);
         if (!(t.depthAlpha > 0.0 && t.normalAlpha > 0.0)) continue;
         const DVec3 n = t.normal / t.normalAlpha;
-        const double facing = -dotOf(n, DVec3(ray.direction));
+        const double facing = -glm::dot(n, DVec3(ray.direction));
         toJump = std::min(toJump, std::abs(facing));
         if (!(facing > 0.0)) continue;
-        const double rate = facing / std::max(dotOf(n, toLight), 0.001);
+        const double rate = facing / std::max(glm::dot(n, toLight), 0.001);
 
         const double mean = t.depth / t.depthAlpha, variance = std::max(0.0, t.depthSquared / t.depthAlpha - mean * mean);
         const double width = (double(bounds.depthMax) - double(bounds.depthMin)) * range;
@@ -88,7 +78,7 @@ DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, con
         const double ahead = p.depth * range - (double(bounds.depthMin) * range + mean * width), half = 0.5 * rate * step;
         const double w = phi((ahead + half) / sigma) - phi((ahead - half) / sigma);
 
-        const double slant = std::max(facing / length(n), double(settings.gather.emitterSlantCap));
+        const double slant = std::max(facing / glm::length(n), double(settings.gather.emitterSlantCap));
         const double delay = (double(settings.gather.emitterDelayTaps) * s.width + double(settings.gather.emitterDelayVoxels)) / slant;
         sum += transmittance(opticalDepth(segments, depths, s.middle - delay), settings) * w * t.radiance;
     }
@@ -130,7 +120,7 @@ March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRa
         const DVec3 sampled = field(DVec3(ray.originVoxels) + offset, double(step.level));
         const double alpha = stepOpacity(densityOf(world, sampled, DVec3(ray.direction)), double(step.end) - double(step.begin), settings);
         const DVec3 pWorld = DVec3(ray.originWorld) + offset * voxel;
-        const DVec3 back = DVec3(ray.originWorld) - pWorld, toReceiver = settings.march.push == 0.0f ? -DVec3(ray.direction) : back / length(back);
+        const DVec3 back = DVec3(ray.originWorld) - pWorld, toReceiver = settings.march.push == 0.0f ? -DVec3(ray.direction) : glm::normalize(back);
         for (const Lrsm& lrsm : world.lrsms) {
             const Outgoing out = algorithm1(lrsm, project(lrsm.projection, pWorld), {Vec3(pWorld), float(0.5 * diameter * voxel), Vec3(toReceiver)}, settings);
             result.toJump = std::min(result.toJump, out.toJump);

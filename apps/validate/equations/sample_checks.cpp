@@ -56,18 +56,15 @@ void checkFootprint(CheckRun& run)
         }
     const auto exact = findWorst(
         space, run.budget(60000), [&](const auto& in) { return footprintError(lrsm, in[0], in[1], in[2], FilterFraction::exact); }, 407);
-    run.add({.equation = "9",
-             .function = "makeFootprint, exact fractions",
-             .oracle = "tents about texel centres and levels, in double",
-             .domain = "maps of 512 .. 1 texels, u, v in [-0.01, 1.01], level -1 .. 10.5",
-             .boundName = "kFootprintWeightMaxError",
-             .errorKind = "absolute, of a weight",
-             .bound = double(kFootprintWeightMaxError),
-             .nanoseconds = run.measuresSpeed()
-                                ? medianNanoseconds(
-                                      4096, [&](std::size_t i) { return makeFootprint(lrsm, float(i) / 4096.0f, 0.4f, 2.5f, FilterFraction::exact).weight[0]; })
-                                : 0.0},
-            exact, inputText<float, 3>({"u", "v", "level"}, exact.input));
+    run.add(
+        {.equation = "9",
+         .function = "makeFootprint, exact fractions",
+         .oracle = "tents about texel centres and levels, in double",
+         .domain = "maps of 512 .. 1 texels, u, v in [-0.01, 1.01], level -1 .. 10.5",
+         .errorKind = "absolute, of a weight",
+         .bound = {"kFootprintWeightMaxError", double(kFootprintWeightMaxError)},
+         .nanoseconds = run.time(4096, [&](std::size_t i) { return makeFootprint(lrsm, float(i) / 4096.0f, 0.4f, 2.5f, FilterFraction::exact).weight[0]; })},
+        exact, inputText<float, 3>({"u", "v", "level"}, exact.input));
 
     // Fractions in 1/256: on that lattice the weights are exact products; off it, they are those of a lattice point within half a step.
     const SearchSpace<float, 3> lattice{{{{0.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 9.0f}}}, {{0.5f, 0.5f, 0.5f}}};
@@ -99,9 +96,8 @@ void checkFootprint(CheckRun& run)
              .function = "makeFootprint, fractions in 1/256",
              .oracle = "tents on the lattice of 1/256 texel, in double",
              .domain = "lattice points of maps of 512 .. 1 texels, and up to 0.497 of a step beside them",
-             .boundName = "exact",
              .errorKind = "absolute, of a weight",
-             .bound = 0.0},
+             .bound = {"exact", 0.0}},
             snapped, inputText<float, 3>({"u", "v", "level"}, snapped.input));
 }
 
@@ -171,9 +167,8 @@ void checkAlgorithm1(CheckRun& run, const char* equation, LayerSelection selecti
              .function = function,
              .oracle = "Algorithm 1 in double, straight from the paper",
              .domain = "random maps of 64^2 under sun and spot, 6 sets of choices; radii 1 cm .. 1 m of a 4 m cube",
-             .boundName = "kSampleLrsmMaxError",
              .errorKind = "relative to the map's largest radiance",
-             .bound = double(kSampleLrsmMaxError)},
+             .bound = {"kSampleLrsmMaxError", double(kSampleLrsmMaxError)}},
             worst, at);
 }
 
@@ -197,22 +192,17 @@ void checkProduct(CheckRun& run)
             return std::abs(double(sampleLrsm(lrsm, cone, cones, phi).x) - expected) / 2.0;
         },
         431);
-    run.add(
-        {.equation = "5",
-         .function = "sampleLrsm, a wall facing the light",
-         .oracle = "R V N in closed form",
-         .domain = "samples within 0.3 m of the wall, radii 1 cm .. 0.4 m",
-         .boundName = "kSampleLrsmFlatMaxError",
-         .errorKind = "relative to R",
-         .bound = double(kSampleLrsmFlatMaxError),
-         .nanoseconds =
-             run.measuresSpeed()
-                 ? medianNanoseconds(2048,
+    run.add({.equation = "5",
+             .function = "sampleLrsm, a wall facing the light",
+             .oracle = "R V N in closed form",
+             .domain = "samples within 0.3 m of the wall, radii 1 cm .. 0.4 m",
+             .errorKind = "relative to R",
+             .bound = {"kSampleLrsmFlatMaxError", double(kSampleLrsmFlatMaxError)},
+             .nanoseconds = run.time(2048,
                                      [&](std::size_t i) {
                                          return sampleLrsm(lrsm, {Vec3(float(i % 64) * 0.05f - 1.6f, 0.02f, 0.2f), 0.1f, Vec3(0.0f, 1.0f, 0.0f)}, cones, phi).x;
-                                     })
-                 : 0.0},
-        worst, inputText<float, 3>({"height", "radius", "v.y"}, worst.input));
+                                     })},
+            worst, inputText<float, 3>({"height", "radius", "v.y"}, worst.input));
 }
 
 /// The map's own edge belongs to it; a hundredth of it beyond does not, nor does anything behind a spot.

@@ -29,11 +29,9 @@ void checkReflected(CheckRun& run)
              .function = "reflectedRadiance",
              .oracle = "rho L_d <n.l> / pi in long double",
              .domain = "rho 1e-3 .. 1, L_d 1e-6 .. 1e6, <n.l> 1e-4 .. 1",
-             .boundName = "kReflectedRadianceMaxError",
              .errorKind = "relative",
-             .bound = double(kReflectedRadianceMaxError),
-             .nanoseconds =
-                 run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return reflectedRadiance(Vec3(0.5f), Vec3(float(i)), 0.3f).x; }) : 0.0},
+             .bound = {"kReflectedRadianceMaxError", double(kReflectedRadianceMaxError)},
+             .nanoseconds = run.time(4096, [](std::size_t i) { return reflectedRadiance(Vec3(0.5f), Vec3(float(i)), 0.3f).x; })},
             worst, inputText<float, 3>({"rho", "L_d", "n.l"}, worst.input));
 }
 
@@ -71,20 +69,19 @@ void checkFloor(CheckRun& run)
         return error;
     };
     const auto texels = static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(n);
-    const auto add = [&](const char* function, const char* boundName, const char* kind, double bound, bool depth) {
+    const auto add = [&](const char* function, const char* kind, const NamedBound& bound, bool depth) {
         const auto worst = exhaust(texels, [&](std::uint64_t i) { return errorAt(i, depth); });
         const int at = static_cast<int>(worst.input[0]);
         run.add({.equation = "2",
                  .function = function,
                  .oracle = "closed form in double",
                  .domain = "every texel of a floor 2.5 m under a spot of 0.6 rad",
-                 .boundName = boundName,
                  .errorKind = kind,
                  .bound = bound},
                 worst, "texel " + std::to_string(at % n) + ", " + std::to_string(at / n));
     };
-    add("renderRsm, radiance", "kRsmRadianceMaxError", "relative to the radiance below the light", double(kRsmRadianceMaxError), false);
-    add("renderRsm, depth and <n.l>", "kRsmDepthMaxError", "relative depth, absolute <n.l>", double(kRsmDepthMaxError), true);
+    add("renderRsm, radiance", "relative to the radiance below the light", {"kRsmRadianceMaxError", double(kRsmRadianceMaxError)}, false);
+    add("renderRsm, depth and <n.l>", "relative depth, absolute <n.l>", {"kRsmDepthMaxError", double(kRsmDepthMaxError)}, true);
 }
 
 /// A square perspective map of the floor y = 0 from a light at height 2, looking down: texels, and what they cover of the floor.
@@ -124,9 +121,8 @@ void checkSums(CheckRun& run)
              .function = "weightEq4, texelSolidAngle",
              .oracle = "area of the floor, solid angle of a pyramid",
              .domain = "maps of 256^2, half field of view 6 .. 39 degrees",
-             .boundName = "kTexelSumMaxError",
              .errorKind = "relative",
-             .bound = kTexelSumMaxError},
+             .bound = {"kTexelSumMaxError", kTexelSumMaxError}},
             area, "halfWidth = 0.1 x (1 + " + exactText(area.input[0]) + ")");
 
     // Eq. 3 where every texel has the same radiance and lies inside: that radiance, for any v; and with an empty footprint: 0.
@@ -140,9 +136,7 @@ void checkSums(CheckRun& run)
              .function = "radianceEq3, constant radiance",
              .oracle = "that radiance; 0 outside the sample",
              .domain = "any v above the floor",
-             .boundName = "kDirectSumMaxError",
-             .errorKind = "absolute",
-             .bound = kDirectSumMaxError},
+             .bound = {"kDirectSumMaxError", kDirectSumMaxError}},
             constant, "draw " + exactText(constant.input[0]));
 
     // Eq. 3 over two planes: w' weighs each by <n.v> / <n.l>. Light and solid angles equal, normals at angles a and b to the light, v at c.
@@ -161,9 +155,7 @@ void checkSums(CheckRun& run)
              .function = "radianceEq3, two planes and a texel outside",
              .oracle = "closed form",
              .domain = "normals within 80 degrees of the light, any v",
-             .boundName = "kThreeTexelSumMaxError",
-             .errorKind = "absolute",
-             .bound = kThreeTexelSumMaxError},
+             .bound = {"kThreeTexelSumMaxError", kThreeTexelSumMaxError}},
             wedge, "draw " + exactText(wedge.input[0]));
 
     // Eq. 7: a disc in a square of texels that face a parallel light.
@@ -179,9 +171,7 @@ void checkSums(CheckRun& run)
              .function = "visibilityEq7",
              .oracle = "area of the disc",
              .domain = "256^2 texels, radii 0.05 .. 0.48 of the map",
-             .boundName = "kCountedDiscMaxError",
-             .errorKind = "absolute",
-             .bound = kCountedDiscMaxError},
+             .bound = {"kCountedDiscMaxError", kCountedDiscMaxError}},
             disc, "i = " + exactText(disc.input[0]));
 }
 
@@ -203,9 +193,8 @@ void checkGaussianModel(CheckRun& run)
              .function = "Eq. 12 for Eq. 7, a sloped plane",
              .oracle = "uniform depths, closed form",
              .domain = "any window",
-             .boundName = "kGaussianForSlopeMaxError",
              .errorKind = "absolute, of the model",
-             .bound = kGaussianForSlopeMaxError},
+             .bound = {"kGaussianForSlopeMaxError", kGaussianForSlopeMaxError}},
             slope, inputText<double, 2>({"zc / half range", "rc / half range"}, slope.input));
     const auto edge = findWorst(
         windows, run.budget(30000), [&](const auto& in) { return std::abs(edgeError(in[0], in[1])); }, 622);
@@ -213,23 +202,21 @@ void checkGaussianModel(CheckRun& run)
              .function = "Eq. 12 for Eq. 7, two depths in one footprint",
              .oracle = "two halves, closed form",
              .domain = "any window",
-             .boundName = "kGaussianForEdgeMaxError",
              .errorKind = "absolute, of the model",
-             .bound = kGaussianForEdgeMaxError},
+             .bound = {"kGaussianForEdgeMaxError", kGaussianForEdgeMaxError}},
             edge, inputText<double, 2>({"zc / half gap", "rc / half gap"}, edge.input));
 
-    EquationCurve curve{.equation = "12",
-                        .title = "Eq. 12 in place of Eq. 7: V minus the exact fraction, window about the mean",
-                        .xLabel = "r_c over half the depth range",
-                        .yLabel = "error of V"};
-    EquationSeries onSlope{.name = "sloped plane"}, onEdge{.name = "two depths"};
+    ChartSeries onSlope{.label = "sloped plane"}, onEdge{.label = "two depths"};
     for (int i = 0; i <= 200; ++i) {
         const double rc = 0.0125 * i;
         onSlope.x.push_back(rc), onSlope.y.push_back(slopeError(0.0, rc));
         onEdge.x.push_back(rc), onEdge.y.push_back(edgeError(0.0, rc));
     }
-    curve.series = {onSlope, onEdge};
-    run.add(curve);
+    run.add({"12",
+             {.title = "Eq. 12 in place of Eq. 7: V minus the exact fraction, window about the mean",
+              .xLabel = "r_c over half the depth range",
+              .yLabel = "error of V",
+              .series = {onSlope, onEdge}}});
 }
 
 }  // namespace

@@ -33,18 +33,15 @@ void checkNormalTerm(CheckRun& run)
         },
         401);
     const auto [texel, v] = inputs(worst.input);
-    run.add(
-        {.equation = "8",
-         .function = "normalTerm",
-         .oracle = "dot product and division in long double",
-         .domain = "mean normals of length <= 1, alpha 2^-16 .. 1, unit v_c",
-         .boundName = "kNormalTermMaxError",
-         .errorKind = "absolute",
-         .bound = double(kNormalTermMaxError),
-         .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [t = texel](std::size_t i) { return normalTerm(t, Vec3(float(i), 1.0f, 0.5f)); }) : 0.0},
-        worst,
-        inputText<float, 7>({"alpha n.x", "alpha n.y", "alpha n.z", "alpha", "v.x", "v.y", "v.z"},
-                            {texel.normal.x, texel.normal.y, texel.normal.z, texel.normalAlpha, v.x, v.y, v.z}));
+    run.add({.equation = "8",
+             .function = "normalTerm",
+             .oracle = "dot product and division in long double",
+             .domain = "mean normals of length <= 1, alpha 2^-16 .. 1, unit v_c",
+             .bound = {"kNormalTermMaxError", double(kNormalTermMaxError)},
+             .nanoseconds = run.time(4096, [t = texel](std::size_t i) { return normalTerm(t, Vec3(float(i), 1.0f, 0.5f)); })},
+            worst,
+            inputText<float, 7>({"alpha n.x", "alpha n.y", "alpha n.z", "alpha", "v.x", "v.y", "v.z"},
+                                {texel.normal.x, texel.normal.y, texel.normal.z, texel.normalAlpha, v.x, v.y, v.z}));
 
     const auto weights = exhaust(2 * 200, [](std::uint64_t i) {
         const auto mode = static_cast<Backface>(i % 2);
@@ -82,14 +79,11 @@ void checkMoments(CheckRun& run)
              .function = "depthMoments, mean",
              .oracle = "division in long double",
              .domain = "depths in [0, 1], alpha 2^-16 .. 1",
-             .boundName = "kDepthMeanMaxError",
-             .errorKind = "absolute",
-             .bound = double(kDepthMeanMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096,
-                                                                    [&](std::size_t i) {
-                                                                        return depthMoments(texelOf({1.0f, float(i) / 4096.0f, 0.5f})).variance;
-                                                                    })
-                                                : 0.0},
+             .bound = {"kDepthMeanMaxError", double(kDepthMeanMaxError)},
+             .nanoseconds = run.time(4096,
+                                     [&](std::size_t i) {
+                                         return depthMoments(texelOf({1.0f, float(i) / 4096.0f, 0.5f})).variance;
+                                     })},
             mean, text(mean.input));
     const auto variance = findWorst(
         space, run.budget(150000),
@@ -105,9 +99,7 @@ void checkMoments(CheckRun& run)
              .function = "depthMoments, variance",
              .oracle = "E[z^2] - E[z]^2 in long double, floored at 2.5e-5",
              .domain = "depths in [0, 1], alpha 2^-16 .. 1",
-             .boundName = "kDepthVarianceMaxError",
-             .errorKind = "absolute",
-             .bound = double(kDepthVarianceMaxError)},
+             .bound = {"kDepthVarianceMaxError", double(kDepthVarianceMaxError)}},
             variance, text(variance.input));
 
     // The floor: a flat texel's moments, each rounded to UNORM16, leave a variance of nothing but rounding.
@@ -127,9 +119,7 @@ void checkMoments(CheckRun& run)
              .function = "kVarianceFloor covers what UNORM16 leaves of a flat texel",
              .oracle = "the true variance, 0",
              .domain = "z in [0, 1]",
-             .boundName = "kVarianceFloor",
-             .errorKind = "absolute",
-             .bound = double(kVarianceFloor)},
+             .bound = {"kVarianceFloor", double(kVarianceFloor)}},
             left, inputText<float, 1>({"z"}, left.input));
     Worst<float, 1> slack = left;
     slack.error = double(kVarianceFloor) / left.error;
@@ -138,9 +128,8 @@ void checkMoments(CheckRun& run)
              .function = "kVarianceFloor is no larger than that needs",
              .oracle = "the row above",
              .domain = "z in [0, 1]",
-             .boundName = "kVarianceFloorSlack",
              .errorKind = "floor over need",
-             .bound = kVarianceFloorSlack},
+             .bound = {"kVarianceFloorSlack", kVarianceFloorSlack}},
             slack, inputText<float, 1>({"z"}, slack.input));
 }
 
@@ -159,10 +148,9 @@ void checkLevel(CheckRun& run)
              .function = "lrsmLevel",
              .oracle = "log2 in double",
              .domain = "diameters 1 mm .. 1 km, texels 0.1 mm .. 100 m, bias +-4",
-             .boundName = "kLrsmLevelMaxError",
              .errorKind = "levels",
-             .bound = double(kLrsmLevelMaxError),
-             .nanoseconds = run.measuresSpeed() ? medianNanoseconds(4096, [](std::size_t i) { return lrsmLevel(0.1f + float(i), 0.3f, 0.0f, 0.0f); }) : 0.0},
+             .bound = {"kLrsmLevelMaxError", double(kLrsmLevelMaxError)},
+             .nanoseconds = run.time(4096, [](std::size_t i) { return lrsmLevel(0.1f + float(i), 0.3f, 0.0f, 0.0f); })},
             worst, inputText<float, 4>({"diameter", "texel", "bias", "min"}, worst.input));
     const auto zero = exhaust(3, [](std::uint64_t i) { return lrsmLevel(0.0f, 0.1f, 0.0f, float(i)) == float(i) ? 0.0 : 1.0; });
     run.add(exactCheck("sec5", "lrsmLevel, diameter 0", "minLevel", "minLevel 0, 1, 2"), zero, "minLevel = " + exactText(zero.input[0]));
@@ -183,17 +171,15 @@ void checkProjection(CheckRun& run)
                                  std::abs(double(p.texelSize) / exact.texelSize - 1.0)});
             },
             406);
-        run.add({.equation = "sec5",
-                 .function = std::string("projectToLight, ") + (spot ? "spot" : "directional"),
-                 .oracle = "double",
-                 .domain = "points of a 4 m cube, lit from 2 .. 4 m",
-                 .boundName = spot ? "kProjectionMaxError" : "kDirectionalProjectionMaxError",
-                 .errorKind = "absolute, u v depth; relative, texel",
-                 .bound = double(spot ? kProjectionMaxError : kDirectionalProjectionMaxError),
-                 .nanoseconds = run.measuresSpeed()
-                                    ? medianNanoseconds(4096, [&](std::size_t i) { return projectToLight(projection, Vec3(float(i) * 1e-3f, 0.1f, 0.2f)).u; })
-                                    : 0.0},
-                worst, inputText<float, 3>({"x", "y", "z"}, worst.input));
+        run.add(
+            {.equation = "sec5",
+             .function = std::string("projectToLight, ") + (spot ? "spot" : "directional"),
+             .oracle = "double",
+             .domain = "points of a 4 m cube, lit from 2 .. 4 m",
+             .errorKind = "absolute, u v depth; relative, texel",
+             .bound = {spot ? "kProjectionMaxError" : "kDirectionalProjectionMaxError", double(spot ? kProjectionMaxError : kDirectionalProjectionMaxError)},
+             .nanoseconds = run.time(4096, [&](std::size_t i) { return projectToLight(projection, Vec3(float(i) * 1e-3f, 0.1f, 0.2f)).u; })},
+            worst, inputText<float, 3>({"x", "y", "z"}, worst.input));
     }
 }
 
@@ -235,9 +221,8 @@ void checkFit(CheckRun& run)
              .function = "fitLightProjection",
              .oracle = "the box in double",
              .domain = "boxes of 1 .. 9 m, sun, spot, cube face",
-             .boundName = "kFitMaxError",
              .errorKind = "relative; metres; tenth of a texel",
-             .bound = double(kFitMaxError)},
+             .bound = {"kFitMaxError", double(kFitMaxError)}},
             worst, "draw " + exactText(worst.input[0]));
 }
 

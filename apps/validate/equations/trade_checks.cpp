@@ -45,10 +45,7 @@ void addStorageTrades(CheckRun& run)
     LayerSettings layers = layersOf(2, 2);
     const Lrsm exact = buildLrsm(rsm, layers);
 
-    EquationCurve curve{.equation = "table1",
-                        .title = "bias of A R by mip level: half toward zero and nearest even",
-                        .xLabel = "mip level",
-                        .yLabel = "mean of stored / exact - 1"};
+    Chart curve{.title = "bias of A R by mip level: half toward zero and nearest even", .xLabel = "mip level", .yLabel = "mean of stored / exact - 1"};
     for (const StorageChoice& choice : choices) {
         layers.storage = choice.storage;
         layers.halfRounding = choice.rounding;
@@ -74,7 +71,7 @@ void addStorageTrades(CheckRun& run)
                 if (expected.toJump > 1e-5) include((double(sampleLrsm(lrsm, cone, cones, phi).x) - expected.radiance.x) / kSyntheticRadiance);
             }
         } else {
-            EquationSeries series{.name = choice.name};
+            ChartSeries series{.label = choice.name};
             for (int lod = 0; lod < lrsm.levels(); ++lod) {
                 double sum = 0.0, texels = 0.0;
                 const std::size_t n = std::size_t(lrsm.resolutionAt(lod)) * std::size_t(lrsm.resolutionAt(lod));
@@ -93,13 +90,11 @@ void addStorageTrades(CheckRun& run)
         trade.meanError /= double(std::max<std::uint64_t>(count, 1));
         trade.bias /= double(std::max<std::uint64_t>(count, 1));
         trade.bytes = choice.storage == Storage::gpu ? 24 : 48;  // of a texel: three textures of four channels
-        if (run.measuresSpeed()) {
-            const Rsm small = gentleMap(64);  // time to build, a base texel
-            trade.nanoseconds = medianNanoseconds(1, [&](std::size_t) { return buildLrsm(small, layers).texels.front().depth[0]; }) / (32.0 * 32.0);
-        }
+        // To build, a base texel.
+        trade.nanoseconds = run.time(1, [&, small = gentleMap(64)](std::size_t) { return buildLrsm(small, layers).texels.front().depth[0]; }) / (32.0 * 32.0);
         run.add(trade);
     }
-    run.add(curve);
+    run.add({"table1", curve});
 }
 
 }  // namespace lrsm

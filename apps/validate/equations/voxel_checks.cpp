@@ -136,18 +136,15 @@ void checkLookup(CheckRun& run)
                 at = "axes " + std::to_string(int(axes)) + ", storage " + std::to_string(int(storage)) + ", " +
                      inputText<float, 4>({"x", "y", "z", "level"}, found.input);
             worst.include(found);
-            if (run.measuresSpeed())
-                nanoseconds = medianNanoseconds(4096, [&](std::size_t i) {
-                    return sampleOpacity(pyramid, Vec3(float(i % 64) * 0.5f, float(i / 64) * 0.5f, 9.3f), 1.4f, FilterFraction::exact).x;
-                });
+            nanoseconds = run.time(4096, [&](std::size_t i) {
+                return sampleOpacity(pyramid, Vec3(float(i % 64) * 0.5f, float(i / 64) * 0.5f, 9.3f), 1.4f, FilterFraction::exact).x;
+            });
         }
     run.add({.equation = "sec3",
              .function = "sampleOpacity",
              .oracle = "tents over the stored texels in double",
              .domain = "32^3 with its border, levels -0.5 .. 5.5, both axes and storages",
-             .boundName = "kOpacityLookupMaxError",
-             .errorKind = "absolute",
-             .bound = double(kOpacityLookupMaxError),
+             .bound = {"kOpacityLookupMaxError", double(kOpacityLookupMaxError)},
              .nanoseconds = nanoseconds},
             worst, at);
 

@@ -57,6 +57,12 @@ struct Case {
     bool mustRefuse = false;     ///< an InputError is what must come; else it breaks the case
 };
 
+/// A case that an InputError must end.
+inline Case refusal(const std::string& name, const std::string& what, const std::function<void(Mode, Probe&)>& run)
+{
+    return {name, what, "refused in one line", run, true, true};
+}
+
 struct Group {
     std::string name;
     std::vector<Case> cases;
@@ -77,12 +83,8 @@ struct CurvePlan {
     double bound = 0.0;
     bool degradesDownwards = false;
     std::string subject;  ///< begins the sentence: "Irradiance of a translated room"
-    bool logX = true;
 };
 ExtremeCurve drawCurve(const CurvePlan& plan);
-
-/// Three significant digits.
-std::string shortText(double value);
 
 Group momentCases();
 Group layerCases();

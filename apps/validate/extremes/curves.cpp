@@ -1,5 +1,6 @@
 #include "apps/validate/extremes/synthetic_map.h"
 #include "apps/validate/extremes/worlds.h"
+#include "core/report/table.h"
 #include "core/scene/shapes.h"
 #include "voxel/voxelize.h"
 
@@ -111,13 +112,12 @@ ExtremeCurve drawCurve(const CurvePlan& plan)
     curve.name = plan.name;
     curve.xLabel = plan.xLabel;
     curve.yLabel = plan.yLabel;
-    curve.logX = plan.logX;
     curve.bound = plan.bound;
     curve.degradesDownwards = plan.degradesDownwards;
     curve.degradesFrom = plan.degradesDownwards ? 0.0 : std::numeric_limits<double>::infinity();
     double worst = 0.0;
     for (const Mode mode : plan.modes) {
-        CurveSeries series{nameOf(mode), plan.x, {}};
+        ChartSeries series{.label = nameOf(mode), .x = plan.x};
         for (const double x : plan.x) {
             const double y = plan.y(mode, x);
             series.y.push_back(std::isfinite(y) ? std::max(y, kLeastShown) : y);
@@ -131,67 +131,38 @@ ExtremeCurve drawCurve(const CurvePlan& plan)
     }
     const bool nowhere = plan.degradesDownwards ? curve.degradesFrom == 0.0 : std::isinf(curve.degradesFrom);
     curve.sentence =
-        plan.subject +
-        (nowhere ? " stays within " + shortText(plan.bound) + " over the whole range, " + shortText(plan.x.front()) + " to " + shortText(plan.x.back()) + "."
-                 : " degrades from " + plan.xLabel + " = " + shortText(curve.degradesFrom) + (plan.degradesDownwards ? " downwards" : " on") +
-                       " (error above " + shortText(plan.bound) + "; before that at most " + shortText(worst) + ").");
+        plan.subject + (nowhere ? " stays within " + shortNumber(plan.bound) + " over the whole range, " + shortNumber(plan.x.front()) + " to " +
+                                      shortNumber(plan.x.back()) + "."
+                                : " degrades from " + plan.xLabel + " = " + shortNumber(curve.degradesFrom) + (plan.degradesDownwards ? " downwards" : " on") +
+                                      " (error above " + shortNumber(plan.bound) + "; before that at most " + shortNumber(worst) + ").");
     return curve;
 }
 
 std::vector<CurvePlan> curvePlans()
 {
-    const std::vector<Mode> storage(std::begin(kStorageModes), std::end(kStorageModes)), one = {Mode::gpuD3d};
-    return {{"offset", "distance from the origin (m)", "difference of irradiance / mean", powers(10.0, 0, 7), storage,
-             [](Mode mode, double x) { return roomAgainst(mode, movedRoom(glm::dvec3(x, -0.7 * x, 0.4 * x))); }, 0.05, false,
-             "Irradiance in a room of 2 m moved from the origin", true},
-            {"scale", "scale of the scene", "difference of irradiance / mean", powers(10.0, -11, 14), storage,
-             [](Mode mode, double x) { return roomAgainst(mode, scaledRoom(x)); }, 0.01, false, "Irradiance in a room of 2 m scaled", true},
-            {"depth ratio",
-             "distance / near plane",
-             "fraction of pixels that show the farther wall",
-             powers(10.0, 1, 6),
-             {Mode::any},
-             [](Mode, double x) { return depthFighting(x); },
-             0.0,
-             false,
-             "The order of two walls 1 % apart in depth",
-             true},
+    const std::vector<Mode> storage(std::begin(kStorageModes), std::end(kStorageModes)), one = {Mode::gpuD3d}, any = {Mode::any};
+    const std::vector<double> cosines = {1e-5, 1e-4, 1e-3, 1e-2, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0};
+    const std::vector<double> degrees = {1e-3, 1e-2, 0.1, 1, 2, 5, 10, 20, 40, 60, 90, 120, 150, 170};
+    const auto moved = [](Mode mode, double x) { return roomAgainst(mode, movedRoom(glm::dvec3(x, -0.7 * x, 0.4 * x))); };
+    const auto scaled = [](Mode mode, double x) { return roomAgainst(mode, scaledRoom(x)); };
+    const auto fighting = [](Mode, double x) { return depthFighting(x); };
+    return {{"offset", "distance from the origin (m)", "difference of irradiance / mean", powers(10.0, 0, 7), storage, moved, 0.05, false,
+             "Irradiance in a room of 2 m moved from the origin"},
+            {"scale", "scale of the scene", "difference of irradiance / mean", powers(10.0, -11, 14), storage, scaled, 0.01, false,
+             "Irradiance in a room of 2 m scaled"},
+            {"depth ratio", "distance / near plane", "fraction of pixels that show the farther wall", powers(10.0, 1, 6), any, fighting, 0.0, false,
+             "The order of two walls 1 % apart in depth"},
             {"radiance, upwards", "radiance (W/(m^2 sr))", "relative error", powers(10.0, -4, 8), storage, radianceLost, 2e-3, false,
-             "Radiance stored and sampled", true},
+             "Radiance stored and sampled"},
             {"radiance, downwards", "radiance (W/(m^2 sr))", "relative error", powers(10.0, -8, 4), storage, radianceLost, 2e-3, true,
-             "Radiance stored and sampled", true},
-            {"<n.l>",
-             "<n.l>",
-             "error of irradiance / <n.l>",
-             {1e-5, 1e-4, 1e-3, 1e-2, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0},
-             storage,
-             grazingIrradiance,
-             0.10,
-             true,
-             "Light from a wall lit at a grazing angle",
-             true},
-            {"aperture",
-             "full aperture (degrees)",
-             "relative error of the cone's radiance",
-             {1e-3, 1e-2, 0.1, 1, 2, 5, 10, 20, 40, 60, 90, 120, 150, 170},
-             one,
-             specularOfWall,
-             0.10,
-             false,
-             "A specular cone in a furnace",
-             true},
-            {"voxel resolution",
-             "voxels along an edge",
-             "relative error of irradiance",
-             {1, 2, 4, 8, 16, 32, 64, 128},
-             storage,
-             furnaceError,
-             0.10,
-             true,
-             "Irradiance of a furnace",
-             true},
+             "Radiance stored and sampled"},
+            {"<n.l>", "<n.l>", "error of irradiance / <n.l>", cosines, storage, grazingIrradiance, 0.10, true, "Light from a wall lit at a grazing angle"},
+            {"aperture", "full aperture (degrees)", "relative error of the cone's radiance", degrees, one, specularOfWall, 0.10, false,
+             "A specular cone in a furnace"},
+            {"voxel resolution", "voxels along an edge", "relative error of irradiance", powers(2.0, 0, 7), storage, furnaceError, 0.10, true,
+             "Irradiance of a furnace"},
             {"coverage", "texels for one that is lit", "relative error of alpha or A R", powers(4.0, 1, 10), storage, thinCoverage, 0.05, false,
-             "What a lone lit texel leaves at the chain's top", true}};
+             "What a lone lit texel leaves at the chain's top"}};
 }
 
 }  // namespace lrsm::extremes

@@ -2,20 +2,13 @@
 
 #include "apps/validate/extremes/catalogue.h"
 #include "core/base/errors.h"
+#include "core/report/table.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lrsm {
 namespace extremes {
-
-std::string shortText(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
 
 namespace {
 
@@ -60,7 +53,7 @@ void Probe::bound(const std::string& name, double value, double limit)
     note(value);
     ++bounds_;
     const double share = std::abs(value) / std::max(limit, 1e-300);
-    const std::string text = name + " " + shortText(value) + ", bound " + shortText(limit);
+    const std::string text = name + " " + shortNumber(value) + ", bound " + shortNumber(limit);
     if (!(std::abs(value) <= limit)) require(false, text);
     if (share > worstShare_) {
         worstShare_ = share;

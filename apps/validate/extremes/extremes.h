@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/report/chart.h"
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -26,17 +28,10 @@ struct ExtremeResult {
     std::string detail;  ///< measured value against its bound, the refusal's line, or what broke
 };
 
-/// One line of a curve: y over x, x ascending.
-struct CurveSeries {
-    std::string label;
-    std::vector<double> x, y;
-};
-
-/// Where accuracy degrades: error against how extreme the input is.
+/// Where accuracy degrades: error against how extreme the input is, both on logarithmic axes; an error of 0 is reported as 1e-12.
 struct ExtremeCurve {
     std::string name, xLabel, yLabel;
-    bool logX = true, logY = true;  ///< for logY, an error of 0 is reported as 1e-12
-    std::vector<CurveSeries> series;
+    std::vector<ChartSeries> series;
     double bound = 0.0;              ///< error that counts as accurate
     double degradesFrom = 0.0;       ///< x from which on some series exceeds `bound`; +infinity: nowhere in the range
     bool degradesDownwards = false;  ///< accuracy is lost towards small x: `degradesFrom` is the largest such x; 0: nowhere in the range

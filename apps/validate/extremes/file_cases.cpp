@@ -40,16 +40,12 @@ Case goodView(const std::string& name, const std::string& camera, const std::str
 }
 Case badView(const std::string& name, const std::string& camera, const std::string& light)
 {
-    return {"view: " + name,
-            "camera {" + camera + "}, light {" + light + "}",
-            "refused in one line",
-            [=](Mode mode, Probe& probe) { showView(mode, probe, viewText(camera, light)); },
-            true,
-            true};
+    return refusal("view: " + name, "camera {" + camera + "}, light {" + light + "}",
+                   [=](Mode mode, Probe& probe) { showView(mode, probe, viewText(camera, light)); });
 }
 Case badText(const std::string& name, const std::string& text)
 {
-    return {"view: " + name, text.substr(0, 80), "refused in one line", [=](Mode mode, Probe& probe) { showView(mode, probe, text); }, true, true};
+    return refusal("view: " + name, text.substr(0, 80), [=](Mode mode, Probe& probe) { showView(mode, probe, text); });
 }
 
 std::string base64(const std::vector<float>& values)
@@ -116,7 +112,7 @@ Case good(const std::string& name, const std::string& what, Document document)
 }
 Case bad(const std::string& name, const std::string& what, Document document)
 {
-    return {"glTF: " + name, what, "refused in one line", [=](Mode mode, Probe& probe) { showDocument(mode, probe, document.text()); }, true, true};
+    return refusal("glTF: " + name, what, [=](Mode mode, Probe& probe) { showDocument(mode, probe, document.text()); });
 }
 
 Document withNode(const std::string& node)

@@ -1,5 +1,6 @@
 #include "apps/validate/extremes/synthetic_map.h"
 #include "apps/validate/extremes/worlds.h"
+#include "core/report/table.h"
 
 #include <cmath>
 
@@ -206,16 +207,12 @@ Group storageCases()
 {
     Group group{"storage", {}};
     for (const double radiance : {1e-8, 6e-8, 6.1e-5, 1e-3, 1.0, 65504.0, 65519.0, 65520.0, 1e5, 1e8}) {
-        char text[16];
-        std::snprintf(text, sizeof text, "%g", radiance);
-        group.cases.push_back({std::string("radiance ") + text, "a uniform map of this radiance, stored and sampled",
+        group.cases.push_back({"radiance " + numberText(6, radiance), "a uniform map of this radiance, stored and sampled",
                                "within half's 2e-3 where half can hold it (6.2e-5 .. 65504), float32 always; outside never infinite, never NaN",
                                [radiance](Mode mode, Probe& probe) { radianceOf(mode, probe, radiance); }});
     }
     for (const float factor : {0.0f, 1e-38f, 1e-8f, 1e8f, 1e26f, 1e38f / 4.0f}) {
-        char text[16];
-        std::snprintf(text, sizeof text, "%g", double(factor));
-        group.cases.push_back({std::string("light times ") + text, "the room's light, scaled; a whole frame",
+        group.cases.push_back({"light times " + numberText(6, double(factor)), "the room's light, scaled; a whole frame",
                                "every pass finite; float32 storage scales the picture",
                                [factor](Mode mode, Probe& probe) { frameOfIntensity(mode, probe, factor); }});
     }

@@ -1,4 +1,5 @@
 #include "apps/validate/extremes/worlds.h"
+#include "core/report/table.h"
 #include "core/scene/light.h"
 #include "core/scene/shapes.h"
 
@@ -22,16 +23,11 @@ Case finite(const std::string& name, const std::string& what, Change change)
 template <class Change>
 Case refused(const std::string& name, const std::string& what, Change change)
 {
-    return {name,
-            what,
-            "refused in one line",
-            [change](Mode mode, Probe& probe) {
-                World world = room();
-                change(world);
-                probe.frame(renderWorld(world, smallSettings(mode)));
-            },
-            true,
-            true};
+    return refusal(name, what, [change](Mode mode, Probe& probe) {
+        World world = room();
+        change(world);
+        probe.frame(renderWorld(world, smallSettings(mode)));
+    });
 }
 
 /// Nothing of the scene is lit: no direct light, no indirect light.
@@ -109,21 +105,17 @@ Group lightCases()
 {
     Group group{"lights", {}};
     auto& cases = group.cases;
+    const std::string middle = "the middle pixel's direct light is rho I / (pi d^2) within 1e-4";
     for (const float outer : {0.5f, 1.0f, 30.0f, 85.0f, 89.0f}) {
-        char name[32];
-        std::snprintf(name, sizeof name, "a spot of %g degrees", 2.0 * double(outer));
-        cases.push_back({name, "a spot of this full angle on a wall 1 m away, smooth to its edge",
-                         "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
-                         [outer](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 0.5f * outer, outer); }});
+        cases.push_back({"a spot of " + numberText(6, 2.0 * double(outer)) + " degrees", "a spot of this full angle on a wall 1 m away, smooth to its edge",
+                         middle, [outer](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 0.5f * outer, outer); }});
     }
     for (const float distance : {1e-6f, 1e-3f, 1e3f, 1e6f, 1e12f}) {
-        char name[48];
-        std::snprintf(name, sizeof name, "a spot %g m off", double(distance));
-        cases.push_back({name, "a wall of 2 m under a spot of 60 degrees at this distance", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
+        cases.push_back({"a spot " + numberText(6, double(distance)) + " m off", "a wall of 2 m under a spot of 60 degrees at this distance", middle,
                          [distance](Mode mode, Probe& probe) { onAxis(mode, probe, distance, 20.0f, 30.0f); }});
     }
-    cases.push_back({"inner and outer angle equal", "a spot with a sharp edge", "the middle pixel's direct light is rho I / (pi d^2) within 1e-4",
-                     [](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 30.0f, 30.0f); }});
+    cases.push_back(
+        {"inner and outer angle equal", "a spot with a sharp edge", middle, [](Mode mode, Probe& probe) { onAxis(mode, probe, 1.0f, 30.0f, 30.0f); }});
     cases.push_back({"two coincident lights", "the room's light twice", "twice the light of one", [](Mode mode, Probe& probe) { coincident(mode, probe, 2); }});
     cases.push_back({"a thousand lights", "the room's light 1000 times, RSMs of 4^2", "a thousand times the light of one", [](Mode mode, Probe& probe) {
                          World world = room();
@@ -137,10 +129,8 @@ Group lightCases()
                      }});
     cases.push_back({"inside geometry", "a spot inside a closed, double-sided block", "no direct light outside the block; every pass finite", insideGeometry});
     for (const double nDotL : {1e-1, 1e-3, 1e-5, 1e-7, 0.0}) {
-        char name[32];
-        std::snprintf(name, sizeof name, "grazing, <n.l> = %g", nDotL);
-        cases.push_back({name, "a wall under a sun that all but misses it: 1/<n.l> of Eq. 4 runs off", "RSM radiance is rho E <n.l> / pi; every pass finite",
-                         [nDotL](Mode mode, Probe& probe) { grazing(mode, probe, nDotL); }});
+        cases.push_back({"grazing, <n.l> = " + numberText(6, nDotL), "a wall under a sun that all but misses it: 1/<n.l> of Eq. 4 runs off",
+                         "RSM radiance is rho E <n.l> / pi; every pass finite", [nDotL](Mode mode, Probe& probe) { grazing(mode, probe, nDotL); }});
     }
     cases.push_back(dark("facing away", "a spot outside the room that looks the other way",
                          [](World& w) { light(w) = spotLight(Vec3(0, 5, 0), Vec3(0, 9, 0), Vec3(4.0f), 0.3f, 0.5f); }));
@@ -224,12 +214,12 @@ Group cameraCases()
     cases.push_back(pictures("picture of 1x300", 1, 300));
     cases.push_back(pictures("picture of 300x1", 300, 1));
     cases.push_back(pictures("picture of 17x13", 17, 13));
-    cases.push_back({"picture of 0x0", "no pixel", "refused in one line",
-                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 0, 0)); }, true, true});
-    cases.push_back({"picture of -1x5", "a negative side", "refused in one line",
-                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), -1, 5)); }, true, true});
-    cases.push_back({"picture of 20000x1", "more than 16384", "refused in one line",
-                     [](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), 20000, 1)); }, true, true});
+    const auto noPicture = [](const std::string& name, const std::string& what, int width, int height) {
+        return refusal(name, what, [=](Mode mode, Probe& probe) { probe.frame(renderWorld(room(), smallSettings(mode), width, height)); });
+    };
+    cases.push_back(noPicture("picture of 0x0", "no pixel", 0, 0));
+    cases.push_back(noPicture("picture of -1x5", "a negative side", -1, 5));
+    cases.push_back(noPicture("picture of 20000x1", "more than 16384", 20000, 1));
     for (const float fov : {0.0f, 180.0f, -10.0f, 400.0f, kNan})
         cases.push_back(refused("field of view " + std::to_string(fov), "degrees", [=](World& w) { w.camera.verticalFov = fov * kDegree; }));
     cases.push_back(refused("eye at the target", "no direction", [=](World& w) { w.camera = lookAt(Vec3(0.5f), Vec3(0.5f), up, 1.0f); }));

@@ -8,7 +8,6 @@
 #include "core/base/parallel.h"
 #include "voxel/voxelize.h"
 
-#include <chrono>
 #include <cmath>
 
 namespace lrsm {
@@ -246,7 +245,6 @@ LadderScene climbLadder(const Scene& scene, const Camera& camera, const Requirem
 {
     if (scene.lights.empty()) throw InputError(scene.name, "has no light, so no cone sample has a radiance; add one, in the file or by a view file");
     if (options.samples < 1) throw InputError("ladder", "the number of samples must be at least 1");
-    const auto began = std::chrono::steady_clock::now();
     const auto tell = [&](const char* stage, double fraction) {
         if (options.progress) options.progress(stage, fraction);
     };
@@ -274,7 +272,6 @@ LadderScene climbLadder(const Scene& scene, const Camera& camera, const Requirem
     }
     describeAll(result, settings.cones.march.estimator == Estimator::slab, options.worstPerRung);
     tell("rungs", 1.0);
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return result;
 }
 

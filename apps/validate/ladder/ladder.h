@@ -127,8 +127,7 @@ struct LadderScene {
     std::size_t withoutSurface = 0;     ///< samples in whose sphere no ray of Eq. 2 meets a surface: L is undefined and they are in no radiance statistic
     double lightFromNothing = 0.0;      ///< their part in the weighted sum of the last rung's L: light that the frame takes from empty spheres
     double noise = 0.0;                 ///< rms over samples of LadderSample::noise
-    double seconds = 0.0;
-    std::vector<std::string> notes;  ///< what the settings make different from the paper's ladder, one sentence each
+    std::vector<std::string> notes;     ///< what the settings make different from the paper's ladder, one sentence each
 
     std::string verdict;  ///< the scene's name and all ladders' verdicts
 };

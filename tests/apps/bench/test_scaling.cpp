@@ -193,7 +193,7 @@ TEST_CASE("scaling: lights, layers and map resolution grow as theory says", "[sw
     CHECK(exponentOf(maps, "cone_steps") == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("scaling: triangles and threads leave the cones' work alone", "[sweep][scaling]")
+TEST_CASE("scaling: triangles and cores leave the cones' work alone", "[sweep][scaling]")
 {
     const ScalingResult triangles = measured("triangles", tinyBase());
     CHECK(exponentOf(triangles, "cone_steps") == Approx(0.0).margin(0.01));

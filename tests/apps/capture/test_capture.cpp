@@ -213,6 +213,24 @@ TEST_CASE("capture: mips that do not follow from the bits are taken as they are"
     CHECK(everywhere == Vec3(0.5f));  // the sampler must not take the middle of the box for known to be empty
 }
 
+/// A buffer as its texture holds it: the first channels of each texel; of voxels a texel each.
+static std::vector<std::byte> bytesIn(const DdsTexture& texture, const Buffer& buffer)
+{
+    std::vector<std::byte> bytes(buffer.bytes.size());
+    const bool bits = buffer.encoding == Encoding::bits;
+    const std::size_t stride = bytesPerTexel(texture.format), own = sizeOf(buffer.dtype) * std::max<std::size_t>(buffer.components.size(), 1);
+    std::size_t i = 0;
+    for (std::uint32_t layer = 0; layer < texture.layers; ++layer) {
+        const std::span<const std::byte> level = texture.level(layer, buffer.dds->mip);
+        for (std::size_t at = 0; at < level.size(); at += stride, ++i)
+            if (bits)
+                bytes[i / 8] |= std::byte(level[at] == std::byte{255} ? 1u << i % 8 : 0u);
+            else
+                std::copy_n(level.begin() + std::ptrdiff_t(at), own, bytes.begin() + std::ptrdiff_t(i * own));
+    }
+    return bytes;
+}
+
 TEST_CASE("capture: DDS hold the buffers' very values", "[capture][dds]")
 {
     const Variant variant = GENERATE(from_range(variants()));
@@ -224,7 +242,7 @@ TEST_CASE("capture: DDS hold the buffers' very values", "[capture][dds]")
         const DdsTexture read = decodeDds(encodeDds(texture.texture), texture.file);
         for (const Buffer& buffer : capture.buffers) {
             if (!buffer.dds || buffer.dds->file != texture.file) continue;
-            CHECK(bytesFromTexture(buffer, read, texture.file) == buffer.bytes);
+            CHECK(bytesIn(read, buffer) == buffer.bytes);
             ++compared;
         }
     }

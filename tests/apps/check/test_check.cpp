@@ -306,7 +306,7 @@ TEST_CASE("check: the first wrong pass in the order of the data flow comes first
     CHECK(report.count(Verdict::wrong) == 4);
 }
 
-TEST_CASE("check: buffers that are not there are no failure; none in common is bad input", "[capture][check]")
+TEST_CASE("check: buffers that are not there are no failure, none in common is bad input", "[capture][check]")
 {
     const Candidate some = candidateOf(sharedGolden(), [](const Buffer& b) { return b.pass == "direct"; });
     const CheckReport report = checkCandidate(sharedGolden(), some);

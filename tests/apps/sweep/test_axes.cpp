@@ -33,7 +33,7 @@ const NamedSettings* labelled(const std::vector<NamedSettings>& all, const std::
 
 }  // namespace
 
-TEST_CASE("an axis is a key and its values; what --set would refuse is refused", "[sweep][axes]")
+TEST_CASE("an axis is a key and its values, what --set would refuse is refused", "[sweep][axes]")
 {
     const Axis axis = parseAxis("cone_count=4,6,12");
     CHECK(axis.key == "cone_count");

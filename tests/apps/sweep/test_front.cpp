@@ -25,7 +25,7 @@ bool beats(const CostError& a, const CostError& b)
 
 }  // namespace
 
-TEST_CASE("the front is what no point beats, by definition; of equal points the first", "[sweep][front]")
+TEST_CASE("the front is what no point beats, by definition, of equal points the first", "[sweep][front]")
 {
     std::mt19937 random(1);
     for (int round = 0; round < 500; ++round) {

@@ -126,7 +126,7 @@ TEST_CASE("the path tracer converges towards the truth by other random numbers, 
     CHECK(measurePathTracer(one, figures, 48, calibration(), {.stop = &stop}).empty());
 }
 
-TEST_CASE("keys: one a case, setting and number of samples; the hash of the scene may be given", "[sweep][measure]")
+TEST_CASE("keys: one a case, setting and number of samples, the hash of the scene may be given", "[sweep][measure]")
 {
     SceneCase one = smallCase(32);
     const std::string key = caseKeyOf(one);

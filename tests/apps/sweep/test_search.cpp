@@ -163,7 +163,7 @@ TEST_CASE("a small budget comes near the front, and nearer than random drawing d
     CHECK(searched < 0.7 * drawn);
 }
 
-TEST_CASE("the search is a function of its seed and values; stopped and begun again, it ends at the same", "[sweep][search]")
+TEST_CASE("the search is a function of its seed and values, stopped and begun again, it ends at the same", "[sweep][search]")
 {
     const SyntheticSpace space(7, 0.1, 3);
     const SearchOptions options = space.options(70);

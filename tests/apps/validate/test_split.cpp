@@ -142,7 +142,7 @@ TEST_CASE("each half stands alone: the LRSM's radiance does not depend on the vo
     CHECK(renderSplit(*scene, settings, exactLrsm).irradiance.texels != renderSplit(*scene, coarse, exactLrsm).irradiance.texels);
 }
 
-TEST_CASE("diffuse and combined layers follow the split; specular and direct stay", "[validation][split]")
+TEST_CASE("diffuse and combined layers follow the split, specular and direct stay", "[validation][split]")
 {
     const auto scene = makeBuiltinScene("cornell-glossy");
     const Settings settings = smallSettings();

@@ -53,7 +53,7 @@ TEST_CASE("white furnace: scale and bias are the lobe's directional albedo, on a
             }
 }
 
-TEST_CASE("specular albedo: linear in F0, a channel at a time; a smooth mirror reflects all but Fresnel's part", "[conetrace][composite]")
+TEST_CASE("specular albedo: linear in F0, a channel at a time, a smooth mirror reflects all but Fresnel's part", "[conetrace][composite]")
 {
     const SpecularAlbedo lobe;
     const Vec3 mixed = lobe(Vec3(0.1f, 0.5f, 0.9f), 0.6f, 0.5f);

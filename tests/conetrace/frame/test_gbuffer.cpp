@@ -135,7 +135,7 @@ TEST_CASE("G-buffer: the specular channels are there only when needed, and chang
     CHECK(less.objectId.texels == all.objectId.texels);
 }
 
-TEST_CASE("G-buffer: any number of threads gives the same bits; an empty scene gives an empty picture", "[conetrace][gbuffer]")
+TEST_CASE("G-buffer: any number of threads gives the same bits, an empty scene gives an empty picture", "[conetrace][gbuffer]")
 {
     std::vector<GBuffer> buffers;
     for (const int threads : {1, 2, 8}) {

@@ -6,7 +6,7 @@
 
 using namespace lrsm;
 
-TEST_CASE("schedule: ends at maxSteps; a step that no longer changes the distance is refused, not taken for the end", "[conetrace][schedule]")
+TEST_CASE("schedule: ends at maxSteps, a step that no longer changes the distance is refused, not taken for the end", "[conetrace][schedule]")
 {
     ConeSettings settings;
     settings.march.maxSteps = 7;

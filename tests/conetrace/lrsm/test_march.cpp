@@ -137,7 +137,7 @@ TEST_CASE("slab: fitted layers lose no more than the tails they skip", "[conetra
         }
 }
 
-TEST_CASE("slab: under slanted light narrow cones still give L in the mean; one ray strays with the phase of its texels", "[conetrace][march][slab]")
+TEST_CASE("slab: under slanted light narrow cones still give L in the mean, one ray strays with the phase of its texels", "[conetrace][march][slab]")
 {
     // The plane's depth varies within a texel, by how much depends on where between texel centres a ray is: sigma changes from segment to segment.
     const double lightCosine = GENERATE(0.6, 0.25);

@@ -7,7 +7,7 @@
 
 using namespace lrsm;
 
-TEST_CASE("half: overflow saturates in d3d and becomes infinity in nearest-even; infinity and NaN stay", "[core][formats]")
+TEST_CASE("half: overflow saturates in d3d and becomes infinity in nearest-even, infinity and NaN stay", "[core][formats]")
 {
     const float inf = std::numeric_limits<float>::infinity();
     for (const float big : {65505.0f, 65519.9f, 65520.0f, 65536.0f, 1e10f, std::numeric_limits<float>::max()}) {

@@ -439,7 +439,7 @@ TEST_CASE("the fragment test is asked only where marked, and a refused fragment 
         }
 }
 
-TEST_CASE("depths beyond 1 are drawn (no far clip); picture sizes outside the range are refused", "[raster]")
+TEST_CASE("depths beyond 1 are drawn (no far clip), picture sizes outside the range are refused", "[raster]")
 {
     const Triangle far{Vec4(-1, -1, 7, 1), Vec4(3, -1, 7, 1), Vec4(-1, 3, 7, 1)};
     CHECK(drawAll({far}, 4, 4).fragments.at(1, 1).depth == 7.0f);

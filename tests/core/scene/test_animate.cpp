@@ -124,7 +124,7 @@ TEST_CASE("animated nodes move their children, in each animation's own way", "[s
     CHECK(GltfBuilder().error({.time = 3, .animation = 1}) != "");
 }
 
-TEST_CASE("a skinned vertex is the weighted sum of its joints' motions; its own node's transform is ignored", "[scene][animate][skin]")
+TEST_CASE("a skinned vertex is the weighted sum of its joints' motions, its own node's transform is ignored", "[scene][animate][skin]")
 {
     GltfBuilder b;
     b.attributes()["POSITION"] = b.add<float>({0, 0, 0, 2, 0, 0, 0, 1, 0}, "VEC3", 5126);

@@ -244,7 +244,7 @@ TEST_CASE("white furnace: a lobe of F0 = 1 returns at most what arrives, and nea
     }
 }
 
-TEST_CASE("the lobe at normal incidence has GGX's closed form; Schlick's rises to 1 at grazing", "[scene][brdf][ggx]")
+TEST_CASE("the lobe at normal incidence has GGX's closed form, Schlick's rises to 1 at grazing", "[scene][brdf][ggx]")
 {
     // l = v = n: D = 1 / (pi alpha^2), G/(4 nl nv) = 1/4, F = F0.
     for (const float roughness : {0.2f, 0.5f, 1.0f}) {

@@ -100,7 +100,7 @@ TEST_CASE("checks: bounds beyond 1e15 m or below 1e-12 m, bad materials and brok
     CHECK(contains(refusal([&] { checkScene(scene); }), "differ in length"));
 }
 
-TEST_CASE("a light at the very point it lights is bright, not infinite; its black channel stays black", "[scene][light]")
+TEST_CASE("a light at the very point it lights is bright, not infinite, its black channel stays black", "[scene][light]")
 {
     for (const float distance : {1e-10f, 1e-20f, 1e-30f, 1e-42f}) {
         const Light light = spotLight(Vec3(0.0f), Vec3(0, 0, -1), Vec3(1e12f, 0.0f, 1.0f), 0.2f, 0.5f);
@@ -113,7 +113,7 @@ TEST_CASE("a light at the very point it lights is bright, not infinite; its blac
     CHECK(sampleLight(directionalLight(Vec3(0, -1, 0), Vec3(1e30f)), Vec3(0.0f)).irradiance == Vec3(kMaxIrradiance));
 }
 
-TEST_CASE("a vertex colour that is NaN is black; grazing light and eye give a finite highlight", "[scene][brdf]")
+TEST_CASE("a vertex colour that is NaN is black, grazing light and eye give a finite highlight", "[scene][brdf]")
 {
     Scene scene = *makeBuiltinScene("cornell-box");
     scene.meshes[0].colors.assign(scene.meshes[0].positions.size(), Vec4(kNan, 0.5f, 1.0f, 1.0f));

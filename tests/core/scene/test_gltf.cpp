@@ -155,7 +155,7 @@ TEST_CASE("points and lines are skipped and counted", "[scene][gltf]")
     CHECK(hasNote(scene, "2 primitives of points or lines skipped"));
 }
 
-TEST_CASE("normalised integers reach exactly 0, 1 and -1; colours of three have alpha 1", "[scene][gltf]")
+TEST_CASE("normalised integers reach exactly 0, 1 and -1, colours of three have alpha 1", "[scene][gltf]")
 {
     GltfBuilder b;
     b.attributes()["TEXCOORD_0"] = b.add<std::uint16_t>({0, 65535, 32768, 0, 65535, 1}, "VEC2", 5123, true);

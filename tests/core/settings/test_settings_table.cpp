@@ -243,7 +243,7 @@ TEST_CASE("settings: validate refuses what no assignment could have let in", "[s
     CHECK(contains(refusal([&] { validate(s); }), "backface"));
 }
 
-TEST_CASE("settings: every preset is valid; the literal one is the paper's reading", "[settings]")
+TEST_CASE("settings: every preset is valid, the literal one is the paper's reading", "[settings]")
 {
     for (const std::string& name : presetNames()) {
         CAPTURE(name);

@@ -12,11 +12,11 @@ TEST_CASE("every equation keeps its stated bound where the search can reach", "[
 {
     const EquationReport& report = test::quickReport();
     for (const EquationCheck& check : report.checks) {
-        CAPTURE(check.equation, check.function, check.boundName, check.bound, check.worst, check.worstInput);
+        CAPTURE(check.equation, check.function, check.bound.name, check.bound.value, check.worst, check.worstInput);
         CHECK(check.holds());
         CHECK(!check.oracle.empty());
         CHECK(!check.domain.empty());
-        CHECK(!check.boundName.empty());
+        CHECK(check.bound.name != std::string());
         CHECK(!check.errorKind.empty());
         CHECK(check.meanError <= check.worst);
     }
@@ -51,7 +51,7 @@ TEST_CASE("one equation alone, and a name that is none", "[equations]")
 TEST_CASE("a check that compared nothing, or met NaN, does not hold", "[equations]")
 {
     EquationCheck check;
-    check.bound = 1.0;
+    check.bound.value = 1.0;
     CHECK(!check.holds());
     check.evaluations = 1;
     CHECK(check.holds());

@@ -112,8 +112,7 @@ TEST_CASE("a curve says where it crosses its bound, in either direction, or that
                    [](Mode mode, double x) { return mode == Mode::float32 ? 0.0 : 1e-3 * x; },
                    0.05,
                    false,
-                   "A planted error",
-                   true};
+                   "A planted error"};
     ExtremeCurve curve = drawCurve(plan);
     CHECK(curve.degradesFrom == 100.0);
     CHECK(contains(curve.sentence, "A planted error degrades from x = 100 on"));

@@ -83,7 +83,7 @@ TEST_CASE("extremes: the curves say from where accuracy degrades", "[extremes][c
     for (const ExtremesReport* each : {&report, &depth, &coverage})
         for (const ExtremeCurve& curve : each->curves) {
             CHECK(curve.sentence.find("degrades from") != std::string::npos);
-            for (const CurveSeries& series : curve.series) CHECK(series.x.size() == series.y.size());
+            for (const ChartSeries& series : curve.series) CHECK(series.x.size() == series.y.size());
         }
 }
 

@@ -207,7 +207,7 @@ TEST_CASE("the shipped rung is what --pixel prints for that step, to the digits 
     CHECK(lit == 6);
 }
 
-TEST_CASE("slab: the shipped segment is what --pixel prints for that step; texels and rays agree in the mean", "[ladder][pixel][emission]")
+TEST_CASE("slab: the shipped segment is what --pixel prints for that step, texels and rays agree in the mean", "[ladder][pixel][emission]")
 {
     Settings settings = smallSettings();
     settings.layers.overlap = 0.0f;

@@ -77,7 +77,7 @@ TEST_CASE("where every assumption holds, every rung gives L: a lit wall that fac
     CHECK(double(sampleLrsm(lrsm, sample, cones, NormalCdf(GaussianMethod::exact)).x) == Approx(2.0).epsilon(1e-4));
 }
 
-TEST_CASE("Eq. 3: a sphere h above a lit plane sees the part of its shadow that the plane's disk fills; Eq. 12 steps", "[ladder][eq3][eq12]")
+TEST_CASE("Eq. 3: a sphere h above a lit plane sees the part of its shadow that the plane's disk fills, Eq. 12 steps", "[ladder][eq3][eq12]")
 {
     const double radius = 0.8, h = GENERATE(0.2, 0.4, 0.7);
     const Rsm rsm = surfaceMap(
@@ -154,7 +154,7 @@ TEST_CASE("Eq. 15 loses the layers that do not hold z_c, unless every touched on
     CHECK(faded.layers == 2);
 }
 
-TEST_CASE("missing texels: unlit in Eq. 3, no light but no share of V and N from Eq. 5 on; beside the map as well", "[ladder][eq3][eq5]")
+TEST_CASE("missing texels: unlit in Eq. 3, no light but no share of V and N from Eq. 5 on, beside the map as well", "[ladder][eq3][eq5]")
 {
     Rsm rsm = surfaceMap(
         512, [](double, double) { return 0.0; }, Vec3(0, 1, 0));
@@ -186,7 +186,7 @@ TEST_CASE("a point light's footprint: solid angles, distances, and spheres about
     CHECK(all.eq5.x == Approx(2.0 * all.insideShare).epsilon(1e-2));
 }
 
-TEST_CASE("the texels in a beam: a lit plane through it emits L at any slant, part of it in part of the beam; the rest nothing", "[ladder][emission]")
+TEST_CASE("the texels in a beam: a lit plane through it emits L at any slant, part of it in part of the beam, the rest nothing", "[ladder][emission]")
 {
     const double tan = GENERATE(0.0, 0.5, 2.0), cosine = 1.0 / std::sqrt(1.0 + tan * tan);
     const Vec3 n(static_cast<float>(-tan * cosine), static_cast<float>(cosine), 0.0f);

@@ -65,7 +65,7 @@ TEST_CASE("Eq. 2: surfaces share by projected area <n.v> dA, hidden and shadowed
     CHECK(below.coverage == 1.0);
 }
 
-TEST_CASE("Eq. 2: no surface in the sphere is told apart from a dark one; backs of single-sided surfaces are none", "[ladder][eq2]")
+TEST_CASE("Eq. 2: no surface in the sphere is told apart from a dark one, backs of single-sided surfaces are none", "[ladder][eq2]")
 {
     const Scene scene = makeScene({floorTo(-10, 10, 0)}, {diffuse(Vec3(0.5f), false)}, {sun({0, -1, 0}, 1.0f)});
     CHECK(integrate(scene, {Vec3(0.0f, 1.0f, 0.0f), 0.9f, Vec3(0, 1, 0)}).coverage == 0.0);
@@ -118,7 +118,7 @@ TEST_CASE("opacity by rays: a cone that faces a wall is blocked by the solid ang
     CHECK(at.cone == Approx(0.75));
 }
 
-TEST_CASE("a box is the mean of the voxels in it, by their exact share; a wall keeps its area density along each axis", "[ladder][eq1]")
+TEST_CASE("a box is the mean of the voxels in it, by their exact share, a wall keeps its area density along each axis", "[ladder][eq1]")
 {
     const Scene wall = makeScene({rectangle({-20, -20, 0.3f}, {0, 40, 0}, {40, 0, 0}), rectangle({-20, -20, -20}, {0, 1e-3f, 0}, {1e-3f, 0, 0}),
                                   rectangle({19, 19, 20}, {0, 1e-3f, 0}, {1e-3f, 0, 0})},
