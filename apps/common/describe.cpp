@@ -84,16 +84,6 @@ Json vectorJson(const Vec3& v)
     return {v.x, v.y, v.z};
 }
 
-Json countersJson(const Counters& counters)
-{
-    Json json = Json::object();
-    for (const Counter& counter : counters) {
-        const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
-        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : std::isfinite(counter.value) ? Json(counter.value) : Json();
-    }
-    return json;
-}
-
 Json vectorJson(const glm::dvec3& v)
 {
     return {v.x, v.y, v.z};
@@ -113,6 +103,16 @@ Json boxJson(const Aabb& box, const glm::dvec3& origin)
 {
     if (box.empty()) return nullptr;
     return {{"min", placeJson(box.min, origin)}, {"max", placeJson(box.max, origin)}};
+}
+
+Json countersJson(const Counters& counters)
+{
+    Json json = Json::object();
+    for (const Counter& counter : counters) {
+        const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
+        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : std::isfinite(counter.value) ? Json(counter.value) : Json();
+    }
+    return json;
 }
 
 Json cameraJson(const Camera& camera, Angle angle, const glm::dvec3& origin)

@@ -15,11 +15,11 @@ namespace lrsm {
 std::string jsonText(const nlohmann::ordered_json& json);
 
 nlohmann::ordered_json vectorJson(const Vec3& v);
-/// Whole numbers without a point; null where a value is not finite.
-nlohmann::ordered_json countersJson(const Counters& counters);
 nlohmann::ordered_json vectorJson(const glm::dvec3& v);
 /// null where there is none.
 nlohmann::ordered_json boxJson(const Aabb& box, const glm::dvec3& origin = glm::dvec3(0.0));
+/// Whole numbers without a point; null where a value is not finite.
+nlohmann::ordered_json countersJson(const Counters& counters);
 /// The field of view in degrees is for people (vertical_fov_degrees); in radians it is the camera's to the last bit (vertical_fov).
 enum class Angle { degrees, radians };
 /// Places in the file's world: `origin` is added (Scene::origin).
