@@ -24,6 +24,7 @@ namespace {
 struct RenderArguments : CommonOptions {
     std::string output, pixel, exposure = "auto", visibility = "voxel", radiance = "lrsm";
     double maxMemoryMegabytes = 0.0;
+    int lanes = 0;
 };
 
 std::optional<float> chosenExposure(const std::string& text)
@@ -63,7 +64,7 @@ int runRender(const RenderArguments& options)
     const IVec2 size = chosenSize(options);
     const std::optional<float> exposure = chosenExposure(options.exposure);
     if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
-    RenderOptions renderOptions{.width = size.x, .height = size.y, .watch = {}, .method = chosenMethod(options)};
+    RenderOptions renderOptions{.width = size.x, .height = size.y, .lanes = options.lanes, .watch = {}, .method = chosenMethod(options)};
     std::optional<IVec2> pixel;
     if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
     std::optional<OutputFolder> folder;
@@ -124,6 +125,8 @@ Command addRender(CLI::App& program)
     parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")
         ->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
+    parser->add_option("--lanes", options->lanes, "pixels that the cones' kernel takes at a time; 0: as many as this machine can; the picture is the same")
+        ->check(CLI::IsMember({0, 4, 8, 16}));
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; a frame that needs more is refused before it starts");
     return {parser, [options] { return runRender(*options); }};
 }

@@ -22,6 +22,7 @@ struct Frame {
 
 struct RenderOptions {
     int width = 1280, height = 720;
+    int lanes = 0;  ///< as GatherInput's
     PassWatch watch;
     GatherMethod method;  ///< instead of settings.method's, where its `gather` is set: validation gathers by rays
 };

@@ -9,7 +9,7 @@ if [ -z "$formatter" ]; then
     exit 0
 fi
 if [ "${1:-}" = "--check" ]; then
-    git ls-files -z '*.h' '*.cpp' | xargs -0 "$formatter" --dry-run --Werror
+    git ls-files -z '*.h' '*.inc' '*.cpp' | xargs -0 "$formatter" --dry-run --Werror
 else
-    git ls-files -z '*.h' '*.cpp' | xargs -0 "$formatter" -i
+    git ls-files -z '*.h' '*.inc' '*.cpp' | xargs -0 "$formatter" -i
 fi

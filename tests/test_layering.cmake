@@ -53,7 +53,7 @@ set(violations "")
 set(checked 0)
 
 foreach(folder IN LISTS folders)
-  file(GLOB sources RELATIVE ${ROOT} ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)
+  file(GLOB sources RELATIVE ${ROOT} ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.inc ${ROOT}/${folder}/*.cpp)
   foreach(source IN LISTS sources)
     math(EXPR checked "${checked} + 1")
     file(STRINGS ${ROOT}/${source} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")

@@ -22,6 +22,7 @@ struct GatherInput {
     const GBuffer& gbuffer;
     const std::vector<Rsm>& rsms;   ///< one a light, in the scene's order
     const OpacityPyramid& opacity;  ///< as far as the method reads it (WorldReads): bits alone, or with mips; else empty
+    int lanes = 0;                  ///< pixels that wide kernels take at a time; 0: as many as the machine can. The bits are the same
 };
 
 /// Indirect light at each pixel's surface; 0 where nothing was drawn.

@@ -2,14 +2,19 @@
 
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
+#include "conetrace/lrsm/march_slab_batch.h"
 #include "conetrace/lrsm/memory.h"
 #include "core/base/parallel.h"
 #include "voxel/sample_opacity.h"
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+
 namespace lrsm {
 namespace {
 
-constexpr int kTile = 16;
+constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
 
 /// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
 struct ResultRecorder : NoRecorder {
@@ -43,7 +48,7 @@ struct GatherOutput {
     }
 };
 
-/// Traces the pixels of one tile.
+/// The pixels of one tile, one after the other.
 template <Estimator estimator, class Sampler>
 void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
                 const GatherOutput& to, ConeCounts& counts)
@@ -70,32 +75,155 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
     }
 }
 
-template <Estimator estimator, class Sampler>
-void gatherAll(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const GatherOutput& out)
+/// All tiles, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts).
+template <class StartTask>
+void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const StartTask& startTask)
 {
     const int tilesX = (gbuffer.width + kTile - 1) / kTile, tilesY = (gbuffer.height + kTile - 1) / kTile;
     std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
-    parallelFor(counts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tile = begin; tile < end; ++tile)
-            gatherTile<estimator>(gbuffer, camera, world, sampler, plan, static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, out, counts[tile]);
+    parallelFor(counts.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+        auto visit = startTask();
+        for (std::size_t tile = begin; tile < end; ++tile) visit(static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, counts[tile]);
     });
     for (const ConeCounts& tile : counts) out.counts += tile;
 }
 
-/// Picks the lookup: specialised for what presets use, generic otherwise; the bits are the same.
-template <Estimator estimator>
-void gatherWith(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
+/// `paper`, Algorithm 1 as printed: one cone at a time.
+void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
-    const OpacityPyramid& opacity = world.opacity;
-    if (opacity.storage != Storage::gpu || world.settings.march.filterFraction != FilterFraction::exact) {
-        gatherAll<estimator>(gbuffer, camera, world, GenericSampler{opacity, world.settings.march.filterFraction}, plan, out);
-    } else if (opacity.axes == OpacityAxes::directional) {
-        const OpacitySampler<Storage::gpu, OpacityAxes::directional, FilterFraction::exact> sampler(opacity);
-        gatherAll<estimator>(gbuffer, camera, world, sampler, plan, out);
-    } else {
-        const OpacitySampler<Storage::gpu, OpacityAxes::isotropic, FilterFraction::exact> sampler(opacity);
-        gatherAll<estimator>(gbuffer, camera, world, sampler, plan, out);
+    withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
+        forTiles(gbuffer, out, [&] {
+            return [&](int tileX, int tileY, ConeCounts& counts) {
+                gatherTile<Estimator::paper>(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts);
+            };
+        });
+    });
+}
+
+/// The pixels of one tile as a batch of cones: all of them for one cone of the set, then for the next.
+class TileBatch {
+  public:
+    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, MarchBatch march)
+        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march)
+    {
     }
+
+    void gather(const Camera& camera, int tileX, int tileY, const GatherOutput& to, ConeCounts& counts)
+    {
+        place(tileX, tileY);
+        if (pixels_.empty()) return;
+        gatherDiffuse(to, counts);
+        if (!to.gathered.specular.empty()) gatherSpecular(camera, to, counts);
+    }
+
+  private:
+    void place(int tileX, int tileY)
+    {
+        pixels_.clear();
+        receivers_.clear();
+        const int xEnd = std::min(gbuffer_.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer_.height, (tileY + 1) * kTile);
+        for (int y = tileY * kTile; y < yEnd; ++y)
+            for (int x = tileX * kTile; x < xEnd; ++x) {
+                const std::size_t pixel = gbuffer_.position.index(x, y);
+                if (!gbuffer_.covered(pixel)) continue;
+                pixels_.push_back(pixel);
+                receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
+            }
+    }
+
+    void gatherDiffuse(const GatherOutput& to, ConeCounts& counts)
+    {
+        const int count = static_cast<int>(pixels_.size()), sets = world_.cones.settings.set.setsPerPixel;
+        std::vector<Mat3> bases;
+        for (int k = 0; k < count; ++k) {
+            const Receiver& receiver = receivers_[std::size_t(k)];
+            bases.push_back(basisFromNormal(receiver.normal));
+            cones_->setOrigin(k, receiver.originVoxels, receiver.originWorld);
+        }
+        cones_->count = count;
+        std::vector<PixelGather> sums(pixels_.size());
+        int cone = 0;
+        for (int s = 0; s < sets; ++s)
+            for (std::size_t r = 0; r < plan_.cones.rings.size(); ++r) {
+                const ConeRing& ring = plan_.cones.rings[r];
+                for (int c = ring.first; c < ring.first + ring.count; ++c, ++cone) {
+                    for (int k = 0; k < count; ++k) {
+                        const int rotation = (receivers_[std::size_t(k)].rotation + s * kRotations / sets) % kRotations;
+                        cones_->setDirection(k, bases[std::size_t(k)] * plan_.cones.rotation(rotation)[std::size_t(c)]);
+                    }
+                    march_(world_, plan_.ringSchedules[r], *cones_, *scratch_, *result_, counts);
+                    for (int k = 0; k < count; ++k) {
+                        const Vec3 radiance = radianceOf(k);
+                        PixelGather& sum = sums[std::size_t(k)];
+                        sum.irradiance += ring.weight * radiance;
+                        sum.opacity += ring.weight * result_->opacity[k];
+                        if (to.record)
+                            to.record->diffuse[std::size_t(cone) * gbuffer_.position.texels.size() + pixels_[std::size_t(k)]] =
+                                Vec4(radiance, result_->opacity[k]);
+                    }
+                }
+            }
+        const float perSet = 1.0f / static_cast<float>(sets);
+        for (std::size_t k = 0; k < pixels_.size(); ++k) {
+            to.gathered.irradiance.texels[pixels_[k]] = sums[k].irradiance * (kPi * perSet);
+            to.gathered.opacity.texels[pixels_[k]] = sums[k].opacity * perSet;
+        }
+    }
+
+    /// A batch for each class of roughness in the tile: specular cones of one class take the same steps.
+    void gatherSpecular(const Camera& camera, const GatherOutput& to, ConeCounts& counts)
+    {
+        std::vector<std::pair<const MarchSchedule*, std::size_t>> waiting;  // schedule, index into pixels_
+        std::vector<Vec3> mirrors(pixels_.size());
+        for (std::size_t k = 0; k < pixels_.size(); ++k) {
+            if (gbuffer_.specularColor.texels[pixels_[k]] == Vec3(0.0f)) continue;
+            const Receiver& receiver = receivers_[k];
+            mirrors[k] = mirrorDirection(receiver, glm::normalize(directionToEye(camera, receiver.position)));
+            if (!(glm::dot(mirrors[k], receiver.geometricNormal) > 0.0f)) continue;
+            waiting.emplace_back(&plan_.specularSchedule(gbuffer_.roughness.texels[pixels_[k]]), k);
+        }
+        std::sort(waiting.begin(), waiting.end());
+        for (std::size_t begin = 0, end = 0; begin < waiting.size(); begin = end) {
+            for (end = begin; end < waiting.size() && waiting[end].first == waiting[begin].first; ++end) {
+                const std::size_t k = waiting[end].second;
+                const int cone = static_cast<int>(end - begin);
+                cones_->setOrigin(cone, receivers_[k].originVoxels, receivers_[k].originWorld);
+                cones_->setDirection(cone, glm::normalize(mirrors[k]));
+            }
+            cones_->count = static_cast<int>(end - begin);
+            march_(world_, *waiting[begin].first, *cones_, *scratch_, *result_, counts);
+            for (std::size_t i = begin; i < end; ++i) {
+                const int cone = static_cast<int>(i - begin);
+                const std::size_t pixel = pixels_[waiting[i].second];
+                to.gathered.specular.texels[pixel] = radianceOf(cone);
+                if (to.record) to.record->specular.texels[pixel] = Vec4(radianceOf(cone), result_->opacity[cone]);
+            }
+        }
+    }
+
+    Vec3 radianceOf(int cone) const { return {result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]}; }
+
+    const GBuffer& gbuffer_;
+    const BatchWorld& world_;
+    const GatherPlan& plan_;
+    const MarchBatch march_;
+    std::vector<std::size_t> pixels_;  ///< covered ones of the tile; any order will do, a stage packs away what it rules out
+    std::vector<Receiver> receivers_;
+    std::unique_ptr<ConeBatch> cones_ = std::make_unique_for_overwrite<ConeBatch>();
+    std::unique_ptr<MarchBatchScratch> scratch_ = std::make_unique_for_overwrite<MarchBatchScratch>();
+    std::unique_ptr<ConeBatchResult> result_ = std::make_unique_for_overwrite<ConeBatchResult>();
+};
+
+/// `slab`: tile by tile at the widest that the machine has.
+void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
+{
+    const BatchWorld batchWorld(world);
+    const MarchBatch march = marchSlabBatch(lanes);
+    forTiles(gbuffer, out, [&] {
+        return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
+            batch.gather(camera, tileX, tileY, out, counts);
+        };
+    });
 }
 
 }  // namespace
@@ -108,7 +236,7 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
 }
 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                    const ConeSettings& settings, ConeRecord* record)
+                    const ConeSettings& settings, ConeRecord* record, int lanes)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
@@ -126,9 +254,9 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     ConeCounts counts;
     if (settings.march.estimator == Estimator::slab)
-        gatherWith<Estimator::slab>(gbuffer, camera, world, plan, {out, record, counts});
+        gatherSlab(gbuffer, camera, world, plan, {out, record, counts}, lanes);
     else
-        gatherWith<Estimator::paper>(gbuffer, camera, world, plan, {out, record, counts});
+        gatherPaper(gbuffer, camera, world, plan, {out, record, counts});
     out.counters = countersOf(counts);
     return out;
 }
@@ -138,7 +266,8 @@ Gathered gatherLrsm(const GatherInput& input, PassLog& log)
     const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
     ConeRecord record;
     Gathered gathered = log.run("cones", kPicturePass, [&] {
-        return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr);
+        return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr,
+                          input.lanes);
     });
     log.show("cones", record);
     gathered.filter4x4 = input.settings.cones.set.filter;

@@ -18,9 +18,10 @@ struct ConeRecord {
 
 /// Final gathering (Sec. 3.2) of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
 /// Irradiance is pi * sum of weight * I over the diffuse cones, opacity their weighted mean, specular the I of the specular cone.
-/// `opacity` and `lrsms` are the world; the camera decides the mirror direction. `record`, when given, is filled besides.
+/// `opacity` and `lrsms` are the world; the camera decides the mirror direction. `record`, when given, is filled besides. `lanes`: as marchSlabBatch
+/// takes it; the bits are the same.
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                    const ConeSettings& settings, ConeRecord* record = nullptr);
+                    const ConeSettings& settings, ConeRecord* record = nullptr, int lanes = 0);
 
 /// The passes "lrsm 0", ..., "cones". Whoever watches the log is shown the ConeRecord too.
 Gathered gatherLrsm(const GatherInput& input, PassLog& log);

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "conetrace/frame/cone.h"
 #include "conetrace/frame/schedule.h"
-#include "core/base/counters.h"
 #include "core/settings/settings.h"
 #include "lrsm/footprint.h"
 #include "lrsm/sample.h"
@@ -28,42 +28,6 @@ struct GenericSampler {
     FilterFraction fraction;
     Vec3 operator()(const Vec3& pVoxels, float level) const { return sampleOpacity(pyramid, pVoxels, level, fraction); }
 };
-
-/// Apex and axis. Distances along the cone are in base voxels.
-struct ConeRay {
-    Vec3 originWorld{0.0f};
-    Vec3 originVoxels{0.0f};
-    Vec3 direction{0.0f, 1.0f, 0.0f};       ///< unit
-    Vec3 receiverNormal{0.0f, 1.0f, 0.0f};  ///< geometric, unit
-};
-
-struct ConeResult {
-    Vec3 radiance{0.0f};   ///< I of Eq. 1
-    float opacity = 0.0f;  ///< 1 - transmittance at the cone's end
-};
-
-struct ConeCounts {
-    std::uint64_t cones = 0;
-    std::uint64_t steps = 0;
-    std::uint64_t voxelTaps = 0;    ///< quadrilinear
-    std::uint64_t lrsmSamples = 0;  ///< trilinear footprints, one a layer
-    ConeCounts& operator+=(const ConeCounts& other)
-    {
-        cones += other.cones;
-        steps += other.steps;
-        voxelTaps += other.voxelTaps;
-        lrsmSamples += other.lrsmSamples;
-        return *this;
-    }
-};
-
-inline Counters countersOf(const ConeCounts& counts)
-{
-    return {{"cones", static_cast<double>(counts.cones)},
-            {"cone_steps", static_cast<double>(counts.steps)},
-            {"voxel_taps", static_cast<double>(counts.voxelTaps)},
-            {"lrsm_samples", static_cast<double>(counts.lrsmSamples)}};
-}
 
 /// Working memory of one thread's cones, sized once for the longest schedule.
 struct MarchScratch {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "conetrace/lrsm/march.h"
-#include "core/base/elementary.h"
 
 #include <optional>
 
@@ -18,18 +17,10 @@
 /// Opacity is area density: a wall covers each ray once, coverage adds, and T = max(0, 1 - integral of density).
 namespace lrsm {
 
-/// Widths of its voxel that a quadrilinear tap reaches through: a trilinear kernel is two voxels wide, blended with that of the level above.
-inline constexpr float kKernelReachTaps = 3.0f;
 /// Rates are capped where light grazes the surface: g = <n.v> / <n.l>.
 inline constexpr float kLeastLightCosine = 1e-3f;
-
-/// Transmittance from optical depth F: linear (a wall covers each ray once) or exponential (randomly placed surfaces). Error <= kTransmittanceMaxError.
-inline constexpr float kTransmittanceMaxError = 4e-7f;
-inline float transmittanceOf(float opticalDepth, const ConeSettings& settings)
-{
-    if (settings.march.transmittance == TransmittanceModel::linear) return std::max(0.0f, 1.0f - opticalDepth);
-    return fastExp2(-1.4426950f * settings.march.densityK * opticalDepth);
-}
+/// Beyond as many sigmas a layer has nothing in a segment.
+inline constexpr float kNegligibleSigmas = 6.0f;
 
 /// F at distance t, by linear interpolation in the segments done so far (`last` is the current one).
 inline float opticalDepthAt(const MarchSchedule& schedule, const std::vector<float>& opticalDepth, std::size_t last, float t)
@@ -47,7 +38,6 @@ template <class Recorder>
 Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const Vec3& pWorld, const MarchSchedule& schedule, std::size_t index,
                   const MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
-    constexpr float kNegligible = 6.0f;  // sigmas beyond which a layer has nothing in the segment
     const ConeSettings& settings = world.settings;
     const Lrsm& lrsm = world.lrsms[std::size_t(light)];
     if (lrsm.layers() == 0) return Vec3(0.0f);
@@ -93,7 +83,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         const float mean = bounds.depthMin * range + warpedMean * scale;
         const float sigma = std::sqrt(warpedVariance * scale * scale + 0.25f * tap * tap);
         const float e0 = zc - mean, h = 0.5f * rate * segment;
-        if (std::abs(e0) - h > kNegligible * sigma) continue;
+        if (std::abs(e0) - h > kNegligibleSigmas * sigma) continue;
         const float weight = world.phi((e0 + h) / sigma) - world.phi((e0 - h) / sigma);
 
         // The emitter's own voxels must not dim it: transmittance is taken in front of them.

@@ -38,13 +38,14 @@ Settings settingsOf(const Json& golden)
 }
 
 /// Scene hash and pass hashes of this build.
-Json hashesOf(const Json& golden)
+Json hashesOf(const Json& golden, int lanes)
 {
     const Scene scene = loadScene(scenePath(golden.at("scene")), {});
     const Settings settings = settingsOf(golden);
     RenderOptions options;
     options.width = golden.at("size").at(0);
     options.height = golden.at("size").at(1);
+    options.lanes = lanes;
     const Frame frame = renderFrame(scene, findCamera(scene, "0"), settings, options);
     Json passes = Json::object();
     for (const PassReport& pass : frame.passes) passes[pass.name] = pass.sha256;
@@ -61,7 +62,7 @@ std::string firstDifference(const Json& golden, const Json& made)
     return expected.size() == made["passes"].size() ? "" : "the list of passes";
 }
 
-Verdict hold(Json& golden, bool bless)
+Verdict hold(Json& golden, int lanes, bool bless)
 {
     const std::string name = golden.at("name"), scene = golden.at("scene");
     if (scene.find('/') != std::string::npos && !std::filesystem::exists(scenePath(scene))) {
@@ -69,7 +70,7 @@ Verdict hold(Json& golden, bool bless)
         return Verdict::skipped;
     }
     const auto begin = std::chrono::steady_clock::now();
-    const Json made = hashesOf(golden);
+    const Json made = hashesOf(golden, lanes);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const std::string difference = firstDifference(golden, made);
     std::printf("  %-24s %5.2f s  %s\n", name.c_str(), seconds, difference.empty() ? "same bits" : ("DIFFERS first in " + difference).c_str());
@@ -77,7 +78,7 @@ Verdict hold(Json& golden, bool bless)
     return difference.empty() ? Verdict::same : Verdict::differs;
 }
 
-int run(const std::string& path, int threads, const std::string& only, const std::string& reason)
+int run(const std::string& path, int threads, int lanes, const std::string& only, const std::string& reason)
 {
     Json file = Json::parse(readFile(path));
     const ThreadLimit limit(threads);
@@ -87,7 +88,7 @@ int run(const std::string& path, int threads, const std::string& only, const std
     for (Json& golden : file.at("frames")) {
         if (!only.empty() && golden.at("name") != only) continue;
         ++held;
-        const Verdict verdict = hold(golden, !reason.empty());
+        const Verdict verdict = hold(golden, lanes, !reason.empty());
         if (verdict == Verdict::differs) changed.push_back(golden.at("name"));
         if (verdict == Verdict::skipped) ++skipped;
     }
@@ -107,12 +108,12 @@ int run(const std::string& path, int threads, const std::string& only, const std
 int main(int argc, char** argv)
 {
     const std::string option = argc == 5 ? argv[3] : "", value = argc == 5 ? argv[4] : "";
-    if (argc != 3 && (value.empty() || (option != "--only" && option != "--bless"))) {
-        std::fprintf(stderr, "usage: lrsm_golden GOLDENS.json THREADS [--only NAME | --bless REASON]\n");
+    if (argc != 3 && (value.empty() || (option != "--only" && option != "--bless" && option != "--lanes"))) {
+        std::fprintf(stderr, "usage: lrsm_golden GOLDENS.json THREADS [--only NAME | --lanes N | --bless REASON]\n");
         return 2;
     }
     try {
-        return run(argv[1], std::atoi(argv[2]), option == "--only" ? value : "", option == "--bless" ? value : "");
+        return run(argv[1], std::atoi(argv[2]), option == "--lanes" ? std::stoi(value) : 0, option == "--only" ? value : "", option == "--bless" ? value : "");
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lrsm_golden: %s\n", error.what());
         return 2;

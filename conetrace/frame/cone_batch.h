@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/base/math.h"
+
+#include <cstddef>
+#include <vector>
+
+/// The pixels of a tile walk one cone together: all cones of a ring take the same steps, so a step's level, lengths and weights are the same for every pixel,
+/// only apex and direction differ.
+namespace lrsm {
+
+inline constexpr int kTile = 16;                               ///< edge of the square of pixels that is one task
+inline constexpr int kBatchCones = kTile * kTile;              ///< cones that a batch holds at most
+inline constexpr int kWidestLanes = 16;                        ///< of any instruction set
+inline constexpr int kBatchRoom = kBatchCones + kWidestLanes;  ///< lists are written a vector at a time
+
+/// Apices and axes; distances along a cone are in base voxels.
+struct ConeBatch {
+    int count = 0;
+    alignas(64) float originVoxels[3][kBatchRoom];
+    alignas(64) float originWorld[3][kBatchRoom];
+    alignas(64) float direction[3][kBatchRoom];  ///< unit
+
+    void setOrigin(int cone, const Vec3& voxels, const Vec3& world)
+    {
+        for (int axis = 0; axis < 3; ++axis) {
+            originVoxels[axis][cone] = voxels[axis];
+            originWorld[axis][cone] = world[axis];
+        }
+    }
+    void setDirection(int cone, const Vec3& unit)
+    {
+        for (int axis = 0; axis < 3; ++axis) direction[axis][cone] = unit[axis];
+    }
+};
+
+/// Of each cone of a batch: I of Eq. 1, and 1 - transmittance at its end.
+struct ConeBatchResult {
+    alignas(64) float radiance[kBatchRoom][4];
+    alignas(64) float opacity[kBatchRoom];
+};
+
+/// What a march keeps of its cones from step to step, by cone, and its lists of those that a stage has left over. A stage writes a list, the next one
+/// reads it: whatever share of the cones survives, all lanes are busy.
+struct MarchBatchScratch {
+    std::vector<float> opticalDepth;  ///< [step * kBatchCones + cone], at each segment's end
+    alignas(64) float exit[kBatchRoom], depth[kBatchRoom], density[kBatchRoom];
+    alignas(64) std::int32_t octant[kBatchRoom], alive[kBatchRoom], occupied[kBatchRoom], wasOccupied[kBatchRoom];
+    // Cones whose tap may meet a voxel: their sample's place, in voxels.
+    alignas(64) std::int32_t lookup[kBatchRoom];
+    alignas(64) float lookupVoxels[3][kBatchRoom];
+    // Cones that may meet an emitter: their sample's place, in the world.
+    alignas(64) std::int32_t request[kBatchRoom];
+    alignas(64) std::int32_t requestOctant[kBatchRoom];  // of its direction: bit k: component k is negative
+    alignas(64) float requestWorld[3][kBatchRoom];
+};
+
+}  // namespace lrsm

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "conetrace/frame/cone_batch.h"
+#include "conetrace/lrsm/march.h"
+#include "lrsm/map_view.h"
+#include "voxel/opacity_view.h"
+
+/// marchSlab for a batch of cones with one schedule, the same bits: one source (march_slab_lanes.inc) at the widths that machines have.
+namespace lrsm {
+
+/// A ConeWorld and what the wide kernels keep beside it: made once a frame. Must not outlive it.
+struct BatchWorld {
+    const ConeWorld& cones;
+    OpacityView opacity;
+    std::vector<MapView> maps;  ///< one a light
+    explicit BatchWorld(const ConeWorld& world)
+        : cones(world), opacity(world.opacity, world.settings.march.filterFraction), maps(world.lrsms.begin(), world.lrsms.end())
+    {
+    }
+};
+
+/// Overwrites `result` for the batch's cones; `scratch` needs no content.
+using MarchBatch = void (*)(const BatchWorld&, const MarchSchedule&, const ConeBatch&, MarchBatchScratch&, ConeBatchResult&, ConeCounts&);
+
+namespace lanes4 {
+void marchSlabBatch(const BatchWorld&, const MarchSchedule&, const ConeBatch&, MarchBatchScratch&, ConeBatchResult&, ConeCounts&);
+}
+namespace lanes8 {
+void marchSlabBatch(const BatchWorld&, const MarchSchedule&, const ConeBatch&, MarchBatchScratch&, ConeBatchResult&, ConeCounts&);
+}
+namespace lanes16 {
+void marchSlabBatch(const BatchWorld&, const MarchSchedule&, const ConeBatch&, MarchBatchScratch&, ConeBatchResult&, ConeCounts&);
+}
+
+/// Widths that this machine runs, narrowest first: 4, and on x86-64 with AVX2 and AVX-512 (F, DQ, BW, VL) also 8 and 16.
+std::vector<int> laneWidths();
+
+/// The kernel of a width; 0, or one that this machine lacks: the widest it has that is not wider.
+MarchBatch marchSlabBatch(int lanes);
+
+}  // namespace lrsm
