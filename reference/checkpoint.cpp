@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "samples.bin is little-endian; add byte swaps for this machine");
 
-constexpr char kMagic[] = "lrsm samples 1\n";
+constexpr char kMagic[] = "lrsm samples 2\n";
 constexpr std::size_t kHashDigits = 64;
 
 class Writer {
@@ -139,7 +139,7 @@ std::vector<std::byte> encodeCheckpoint(const Checkpoint& checkpoint)
     const ReferenceState& state = checkpoint.state;
     out.value(checkpoint.unit);
     out.value(state.finished() ? SampleRange{} : state.target);  // what is left to do
-    out.values(state.finished() ? std::vector<std::uint32_t>{} : state.chunkBlocks);
+    out.values(state.finished() ? std::vector<std::uint32_t>{} : state.tileBlocks);
     out.value(state.rays);
     out.value(state.invalidSamples);
     out.value(state.finished() ? 0.0 : state.seconds);
@@ -168,7 +168,7 @@ Checkpoint decodeCheckpoint(const std::vector<unsigned char>& bytes, const std::
     }
     checkpoint.unit = in.value<double>();
     checkpoint.state.target = in.value<SampleRange>();
-    checkpoint.state.chunkBlocks = in.values<std::uint32_t>();
+    checkpoint.state.tileBlocks = in.values<std::uint32_t>();
     checkpoint.state.rays = in.value<RayCounts>();
     checkpoint.state.invalidSamples = in.value<std::uint64_t>();
     checkpoint.state.seconds = in.value<double>();

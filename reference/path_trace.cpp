@@ -1,107 +1,18 @@
 #include "reference/path_trace.h"
 
-#include "core/base/elementary.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "reference/directions.h"
-#include "reference/integrator.h"
-#include "reference/sample_layout.h"
+#include "reference/pixel_sampler.h"
 
 #include <mutex>
 
 namespace lrsm {
 namespace {
 
-constexpr std::size_t kChunkPixels = 256;
-
-/// What the counter of a random draw is for: keeps the streams of one pixel apart.
-enum Purpose : std::uint32_t { kDiffuseDirection = 0, kLobeDirection = 1, kConeDirection = 2, kDiffusePath = 16, kLobePath = 17, kConePath = 18 };
+constexpr std::size_t kPixelsAtATime = 256;
 
 using Clock = std::chrono::steady_clock;
-using Sample = std::array<float, kConeChannels>;
 
-/// Everything that the samples of one pixel in one block share.
-struct PixelBlock {
-    std::uint32_t pixel;
-    std::uint64_t block;
-    int blockBits;
-    std::array<std::uint32_t, 2> key;
-
-    SobolBlock points(Purpose purpose) const { return {philox({pixel, std::uint32_t(block), std::uint32_t(block >> 32), purpose}, key), blockBits}; }
-    PathRandom path(Purpose purpose, std::uint32_t index) const
-    {
-        // The low 24 bits of the last word count the path's vertices.
-        return {{pixel, std::uint32_t(block << blockBits) | index, std::uint32_t(block >> (32 - blockBits)), std::uint32_t(purpose) << 24}, key};
-    }
-};
-
-/// Radiance from one direction off the primary surface, 0 below its geometric horizon: the surface itself is in the way there.
-Vec3 gather(Tracer& tracer, const Surface& surface, const Vec3& direction, Transport transport, PathRandom random, bool& hit)
-{
-    hit = true;
-    if (!(glm::dot(surface.geometricNormal, direction) > 0.0f)) return Vec3(0.0f);
-    return incomingRadiance(tracer, rayFrom(tracer, surface, direction, RayKind::bounce), transport, random, hit);
-}
-
-void store(Sample& sample, int channel, const Vec3& value)
-{
-    for (int c = 0; c < 3; ++c) sample[std::size_t(channel + c)] = value[c];
-}
-
-class PixelSampler {
-  public:
-    PixelSampler(const PixelBlock& block, const ReferenceSettings& settings, const Surface& surface, const Vec3& toEye, int channels)
-        : block_(block),
-          transport_(settings.transport),
-          surface_(surface),
-          toEye_(toEye),
-          channels_(channels),
-          diffuse_(block.points(kDiffuseDirection)),
-          lobe_(block.points(kLobeDirection)),
-          cone_(block.points(kConeDirection)),
-          cosHalf_(float(sinCos(0.5 * double(settings.specularApertureDegrees) * 3.14159265358979323846 / 180.0).cos))
-    {
-    }
-
-    Sample draw(Tracer& tracer, std::uint32_t index) const
-    {
-        Sample sample{};
-        bool hit = false;
-        const Vec3 direction = cosineDirection(surface_.normal, diffuse_.point(index));
-        store(sample, kIrradiance, kPi * gather(tracer, surface_, direction, transport_, block_.path(kDiffusePath, index), hit));
-        sample[kOpacity] = hit ? 1.0f : 0.0f;
-        if (channels_ > kDiffuseChannels && surface_.specularColor != Vec3(0.0f)) drawSpecular(tracer, index, sample);
-        return sample;
-    }
-
-  private:
-    void drawSpecular(Tracer& tracer, std::uint32_t index, Sample& sample) const
-    {
-        bool hit = false;
-        const Vec3 direction = lobeDirection(surface_, toEye_, lobe_.point(index));
-        const Vec3 reflected = evaluateSpecular(surface_, direction, toEye_);
-        if (reflected != Vec3(0.0f))
-            store(sample, kLobe,
-                  reflected / lobeDensity(surface_, toEye_, direction) * gather(tracer, surface_, direction, transport_, block_.path(kLobePath, index), hit));
-        if (channels_ < kConeChannels) return;
-        const Vec3 inCone = coneDirection(mirrored(toEye_, surface_.normal), cosHalf_, cone_.point(index));
-        store(sample, kCone, gather(tracer, surface_, inCone, transport_, block_.path(kConePath, index), hit));
-    }
-
-    PixelBlock block_;
-    Transport transport_;
-    const Surface& surface_;
-    Vec3 toEye_;
-    int channels_;
-    SobolBlock diffuse_, lobe_, cone_;
-    float cosHalf_;
-};
-
-/// The part of block `block` that lies in the range.
-struct Segment {
-    std::uint64_t block;
-    std::uint32_t first, last;
-};
 Segment segmentOf(const SampleRange& range, std::uint32_t number, int blockBits)
 {
     const std::uint64_t block = (range.begin >> blockBits) + number, start = block << blockBits, size = std::uint64_t(1) << blockBits;
@@ -111,11 +22,6 @@ std::uint32_t segmentCount(const SampleRange& range, int blockBits)
 {
     if (range.size() == 0) return 0;
     return std::uint32_t(((range.end - 1) >> blockBits) - (range.begin >> blockBits) + 1);
-}
-
-std::size_t chunkCount(std::size_t pixels)
-{
-    return (pixels + kChunkPixels - 1) / kChunkPixels;
 }
 
 bool anySpecular(const Scene& scene)
@@ -163,6 +69,8 @@ PathTracer::PathTracer(const Scene& scene, const Camera& camera, const Reference
       unit_(sampleUnit(scene))
 {
     shootPrimary(camera);
+    guide_.tiles = {settings_.width, settings_.height};
+    if (settings_.fromLights) guide_ = learnLightGuide(embree_, lights_, primary_, settings_.transport);
 }
 
 int PathTracer::channels() const
@@ -175,7 +83,7 @@ void PathTracer::shootPrimary(const Camera& camera)
     const int width = settings_.width, height = settings_.height;
     primary_ = {{width, height}, {width, height}, {width, height}, {width, height}, {width, height}};
     std::mutex countsMutex;
-    parallelFor(primary_.covered.texels.size(), kChunkPixels, [&](std::size_t begin, std::size_t end) {
+    parallelFor(primary_.covered.texels.size(), kPixelsAtATime, [&](std::size_t begin, std::size_t end) {
         Tracer tracer(embree_, lights_);
         for (std::size_t i = begin; i < end; ++i) {
             const auto x = float(i % std::size_t(width)), y = float(i / std::size_t(width));
@@ -201,7 +109,7 @@ ReferenceState PathTracer::start(SampleRange range) const
     state.target = range;
     const std::size_t pixels = primary_.covered.texels.size();
     state.sums = makeSums(pixels, channels(), settings_.blockBits);
-    state.chunkBlocks.assign(chunkCount(pixels), 0);
+    state.tileBlocks.assign(guide_.tiles.count(), 0);
     const std::uint32_t segments = segmentCount(range, settings_.blockBits);
     for (std::uint32_t number = 0; number < segments; ++number) {
         const Segment segment = segmentOf(range, number, settings_.blockBits);
@@ -224,16 +132,45 @@ void PathTracer::extend(ReferenceState& state, SampleRange range) const
     state = std::move(next);
 }
 
+std::uint64_t PathTracer::addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const
+{
+    const int channelCount = channels();
+    std::uint64_t invalid = 0;
+    std::array<std::array<Int128, kConeChannels>, kTilePixels> tileSums{};
+    TileSampler sampler(*this, tile, {segment.block, settings_.blockBits, keyOf(settings_.seed)});
+    sampler.drawSamples(tracer, segment.first, segment.last, [&](std::size_t, std::size_t number, const Sample& sample) {
+        for (int c = 0; c < channelCount; ++c) {
+            const double value = double(sample[std::size_t(c)]) / (c == kOpacity ? 1.0 : unit_);
+            if (std::isfinite(value))
+                tileSums[number][std::size_t(c)] += toFixed(value);
+            else
+                ++invalid;
+        }
+    });
+    forEachPixel(guide_.tiles, tile, [&](std::size_t pixel, std::size_t number) {
+        for (int c = 0; c < channelCount; ++c) {
+            const std::size_t at = pixel * std::size_t(channelCount) + std::size_t(c);
+            const Int128 sum = tileSums[number][std::size_t(c)];
+            if (cut)
+                cut->sums[at] += sum;
+            else {
+                sums.sums[at] += sum;
+                sums.squares[at] += squareOfBlockMean(sum, settings_.blockBits);
+            }
+        }
+    });
+    return invalid;
+}
+
 bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, const std::atomic<bool>* stop) const
 {
     const Clock::time_point begun = Clock::now();
     const std::uint32_t segments = segmentCount(state.target, settings_.blockBits);
-    const int channelCount = channels();
     const auto halted = [&] { return (stop && stop->load(std::memory_order_relaxed)) || Clock::now() >= deadline; };
     std::mutex reportMutex;
 
     // All pixels see one block before any sees the next, so that an interrupted picture is evenly converged.
-    const std::uint32_t least = state.chunkBlocks.empty() ? segments : *std::min_element(state.chunkBlocks.begin(), state.chunkBlocks.end());
+    const std::uint32_t least = state.tileBlocks.empty() ? segments : *std::min_element(state.tileBlocks.begin(), state.tileBlocks.end());
     for (std::uint32_t number = least; number < segments && !halted(); ++number) {
         const Segment segment = segmentOf(state.target, number, settings_.blockBits);
         const bool whole = segment.last - segment.first == state.sums.blockSize();
@@ -241,45 +178,18 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
         for (PartialBlock& partial : state.sums.partial)
             if (!whole && partial.block == segment.block) cut = &partial;
 
-        parallelFor(state.chunkBlocks.size(), 1, [&](std::size_t chunk, std::size_t) {
-            if (state.chunkBlocks[chunk] != number || halted()) return;
+        parallelFor(state.tileBlocks.size(), 1, [&](std::size_t tile, std::size_t) {
+            if (state.tileBlocks[tile] != number || halted()) return;
             Tracer tracer(embree_, lights_);
-            std::uint64_t invalid = 0;
-            const std::size_t end = std::min((chunk + 1) * kChunkPixels, primary_.covered.texels.size());
-            for (std::size_t i = chunk * kChunkPixels; i < end; ++i) {
-                if (!primary_.covered.texels[i]) continue;
-                const PixelBlock block{std::uint32_t(i), segment.block, settings_.blockBits, keyOf(settings_.seed)};
-                const PixelSampler sampler(block, settings_, primary_.surface.texels[i], primary_.toEye.texels[i], channelCount);
-                std::array<Int128, kConeChannels> sum{};
-                for (std::uint32_t index = segment.first; index < segment.last; ++index) {
-                    const Sample sample = sampler.draw(tracer, index);
-                    for (int c = 0; c < channelCount; ++c) {
-                        const double value = double(sample[std::size_t(c)]) / (c == kOpacity ? 1.0 : unit_);
-                        if (std::isfinite(value))
-                            sum[std::size_t(c)] += toFixed(value);
-                        else
-                            ++invalid;
-                    }
-                }
-                for (int c = 0; c < channelCount; ++c) {
-                    const std::size_t at = i * std::size_t(channelCount) + std::size_t(c);
-                    if (whole) {
-                        state.sums.sums[at] += sum[std::size_t(c)];
-                        state.sums.squares[at] += squareOfBlockMean(sum[std::size_t(c)], settings_.blockBits);
-                    } else {
-                        cut->sums[at] += sum[std::size_t(c)];
-                    }
-                }
-            }
-            state.chunkBlocks[chunk] = number + 1;
+            const std::uint64_t invalid = addTile(tracer, state.sums, cut, tile, segment);
+            state.tileBlocks[tile] = number + 1;
             const std::lock_guard lock(reportMutex);
-            state.rays.bounce += tracer.counts.bounce;
-            state.rays.light += tracer.counts.light;
+            state.rays += tracer.counts;
             state.invalidSamples += invalid;
         });
     }
     state.seconds += std::chrono::duration<double>(Clock::now() - begun).count();
-    const bool done = std::all_of(state.chunkBlocks.begin(), state.chunkBlocks.end(), [&](std::uint32_t blocks) { return blocks == segments; });
+    const bool done = std::all_of(state.tileBlocks.begin(), state.tileBlocks.end(), [&](std::uint32_t blocks) { return blocks == segments; });
     if (done && !state.finished() && state.target.size() > 0) {
         state.sums.ranges = {state.target};
         if (!state.base.ranges.empty()) mergeSums(state.sums, state.base, "samples");
@@ -291,34 +201,28 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
 double PathTracer::progress(const ReferenceState& state)
 {
     const std::uint32_t segments = segmentCount(state.target, state.sums.blockBits);
-    if (segments == 0 || state.chunkBlocks.empty()) return 1.0;
+    if (segments == 0 || state.tileBlocks.empty()) return 1.0;
     std::uint64_t done = 0;
-    for (const std::uint32_t blocks : state.chunkBlocks) done += blocks;
-    return double(done) / (double(segments) * double(state.chunkBlocks.size()));
+    for (const std::uint32_t blocks : state.tileBlocks) done += blocks;
+    return double(done) / (double(segments) * double(state.tileBlocks.size()));
 }
 
 BareLoop PathTracer::timeBareLoop(std::size_t stride) const
 {
-    const std::size_t pixels = primary_.covered.texels.size();
-    std::vector<std::vector<RecordedRay>> chunks((chunkCount(pixels) + stride - 1) / stride);
-    parallelFor(chunks.size(), 1, [&](std::size_t number, std::size_t) {
-        Tracer tracer(embree_, lights_, &chunks[number]);
-        const std::size_t first = number * stride * kChunkPixels;
-        for (std::size_t i = first; i < std::min(first + kChunkPixels, pixels); ++i) {
-            if (!primary_.covered.texels[i]) continue;
-            const PixelSampler sampler({std::uint32_t(i), 0, settings_.blockBits, keyOf(settings_.seed)}, settings_, primary_.surface.texels[i],
-                                       primary_.toEye.texels[i], channels());
-            for (std::uint32_t index = 0; index < (1u << settings_.blockBits); ++index) sampler.draw(tracer, index);
-        }
+    std::vector<std::vector<RecordedRay>> tiles((guide_.tiles.count() + stride - 1) / stride);
+    parallelFor(tiles.size(), 1, [&](std::size_t number, std::size_t) {
+        Tracer tracer(embree_, lights_, &tiles[number]);
+        TileSampler sampler(*this, number * stride, {0, settings_.blockBits, keyOf(settings_.seed)});
+        sampler.drawSamples(tracer, 0, 1u << settings_.blockBits, [](std::size_t, std::size_t, const Sample&) {});
     });
 
     BareLoop result;
-    for (const auto& rays : chunks) result.rays += rays.size();
+    for (const auto& rays : tiles) result.rays += rays.size();
     std::atomic<std::uint64_t> hits = 0;  // uses the answers, so that no query is dropped
     const Clock::time_point begun = Clock::now();
-    parallelFor(chunks.size(), 1, [&](std::size_t number, std::size_t) {
+    parallelFor(tiles.size(), 1, [&](std::size_t number, std::size_t) {
         std::uint64_t here = 0;
-        for (const RecordedRay& recorded : chunks[number])
+        for (const RecordedRay& recorded : tiles[number])
             here += recorded.shadow ? embree_.occluded(recorded.ray) : embree_.closestHit(recorded.ray).has_value();
         hits += here;
     });

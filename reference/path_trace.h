@@ -2,8 +2,8 @@
 
 #include "core/base/image.h"
 #include "core/scene/camera.h"
-#include "core/scene/light.h"
-#include "reference/embree_scene.h"
+#include "reference/integrator.h"
+#include "reference/light_guide.h"
 #include "reference/sample_sums.h"
 
 #include <atomic>
@@ -17,28 +17,17 @@
 /// visibility, filtering or gathering code.
 namespace lrsm {
 
-enum class Transport {
-    single,  ///< what LRSM sets out to compute: direct light and one bounce off diffuse secondary surfaces
-    full     ///< any number of bounces (Russian roulette), every BRDF at every vertex
-};
-
 struct ReferenceSettings {
     Transport transport = Transport::single;
     int width = 1280, height = 720;
     int blockBits = 4;                     ///< log2 of the samples stratified against each other, 0..12; the spread is taken over blocks
     float specularApertureDegrees = 0.0f;  ///< full aperture of the cone layer, (0, 170]; 0: the cone layer is left out
+    bool fromLights = true;                ///< lit points are found from the lights' side, too; off: by the path's own rays alone
     std::uint64_t seed = 0;
     bool operator==(const ReferenceSettings&) const = default;
 };
 /// Throws InputError naming field, value and range.
 void validate(const ReferenceSettings& settings);
-
-/// Rays of each kind, for the ray budget.
-struct RayCounts {
-    std::uint64_t eye = 0, bounce = 0, light = 0;
-    std::uint64_t total() const { return eye + bounce + light; }
-    bool operator==(const RayCounts&) const = default;
-};
 
 /// What the eye sees: one ray through each pixel's centre, no antialiasing, as in the G-buffer.
 struct PrimaryHits {
@@ -49,12 +38,12 @@ struct PrimaryHits {
     Image<Vec3> direct;  ///< radiance towards the eye: every light, one shadow ray each, diffuse and specular
 };
 
-/// What has been rendered so far. The progress of a chunk of pixels is how many of the target range's blocks it has seen.
+/// What has been rendered so far. The progress of a tile is how many of the target range's blocks it has seen.
 struct ReferenceState {
     SampleRange target;
     SampleSums sums;  ///< of the target range; `ranges` is filled in when finished
     SampleSums base;  ///< finished earlier, joined to `sums` when the target is finished; no ranges: none
-    std::vector<std::uint32_t> chunkBlocks;
+    std::vector<std::uint32_t> tileBlocks;
     RayCounts rays;
     std::uint64_t invalidSamples = 0;  ///< NaN or infinite contributions, counted as 0
     double seconds = 0.0;              ///< spent tracing
@@ -75,25 +64,26 @@ struct ReferenceFrame {
     std::uint64_t samples = 0;
 };
 
-/// A ray as it was traced.
-struct RecordedRay {
-    Ray ray;
-    bool shadow = false;
-};
-
 /// How fast the same kind of rays go when nothing else is done: what shading, sampling and sums cost is seen against it.
 struct BareLoop {
     std::uint64_t rays = 0;
     double seconds = 0.0;
 };
 
+/// The part of block `block` that lies in the range.
+struct Segment {
+    std::uint64_t block;
+    std::uint32_t first, last;
+};
+
 class PathTracer {
   public:
-    /// Builds the BVH and shoots the primary rays. `scene` must outlive the tracer.
+    /// Builds the BVH, shoots the primary rays, and runs the pilot. `scene` must outlive the tracer.
     PathTracer(const Scene& scene, const Camera& camera, const ReferenceSettings& settings);
 
     const PrimaryHits& primary() const { return primary_; }
     const EmbreeScene& embree() const { return embree_; }
+    const LightGuide& guide() const { return guide_; }
     const ReferenceSettings& settings() const { return settings_; }
     RayCounts primaryRays() const { return primaryRays_; }
     /// Values a pixel in the sums: irradiance and opacity, and with a specular part the lobe and the cone.
@@ -102,7 +92,7 @@ class PathTracer {
     ReferenceState start(SampleRange range) const;
     /// Adds a range to a finished state.
     void extend(ReferenceState& state, SampleRange range) const;
-    /// Renders until the range is done (true), `stop` is set, or the deadline has passed; what a started chunk does is kept.
+    /// Renders until the range is done (true), `stop` is set, or the deadline has passed; what a started tile does is kept.
     bool advance(ReferenceState& state, std::chrono::steady_clock::time_point deadline, const std::atomic<bool>* stop = nullptr) const;
     /// Fraction of the target range done, [0, 1].
     static double progress(const ReferenceState& state);
@@ -110,11 +100,13 @@ class PathTracer {
     ReferenceFrame resolve(const SampleSums& sums) const;
     double unit() const { return unit_; }
 
-    /// Traces the rays of every `stride`-th chunk's first block again, with nothing but the ray queries inside the clock.
+    /// Traces the rays of every `stride`-th tile's first block again, with nothing but the ray queries inside the clock.
     BareLoop timeBareLoop(std::size_t stride) const;
 
   private:
     void shootPrimary(const Camera& camera);
+    /// Adds a tile's samples to the sums, or to those of the block that the range cuts. Returns how many values were not finite.
+    std::uint64_t addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const;
 
     const Scene& scene_;
     ReferenceSettings settings_;
@@ -122,6 +114,7 @@ class PathTracer {
     std::vector<LightSampler> lights_;
     PrimaryHits primary_;
     RayCounts primaryRays_;
+    LightGuide guide_;
     bool specular_ = false;
     double unit_ = 1.0;
 };

@@ -65,8 +65,7 @@ int runMerge(const MergeArguments& options)
         if (next.state.sums.sums.size() != merged.state.sums.sums.size() || next.unit != merged.unit)
             throw InputError(folder, "holds another picture than " + options.folders[0]);
         mergeSums(merged.state.sums, next.state.sums, folder.c_str());
-        merged.state.rays.bounce += next.state.rays.bounce;
-        merged.state.rays.light += next.state.rays.light;
+        merged.state.rays += next.state.rays;
         merged.state.invalidSamples += next.state.invalidSamples;
         addCounts(json, readFrameJson(folder), "rays");
     }

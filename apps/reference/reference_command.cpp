@@ -27,8 +27,9 @@ struct ReferenceArguments : CommonOptions {
     std::uint64_t spp = 256, seed = 0;
     int block = 16;
     float specularAperture = 0.0f;
+    double targetNoise = 0.0;
     double checkpointSeconds = 60.0;
-    bool resume = false, bareLoop = false;
+    bool resume = false, bareLoop = false, eyeSide = false;
 };
 
 ReferenceSettings chosenReference(const ReferenceArguments& options)
@@ -44,6 +45,7 @@ ReferenceSettings chosenReference(const ReferenceArguments& options)
     if ((1 << settings.blockBits) != options.block) throw InputError("--block " + std::to_string(options.block), "must be a power of two, 1 .. 4096");
     settings.specularApertureDegrees = options.specularAperture;
     settings.seed = options.seed;
+    settings.fromLights = !options.eyeSide;
     validate(settings);
     return settings;
 }
@@ -51,16 +53,17 @@ ReferenceSettings chosenReference(const ReferenceArguments& options)
 SampleRange chosenRange(const ReferenceArguments& options)
 {
     if (!options.samples.empty()) return parseSamples(options.samples);
+    if (options.targetNoise != 0.0) return {0, std::uint64_t(options.block)};  // a first block; the noise says how many more
     if (options.spp < 1 || options.spp > std::uint64_t(1) << 32) throw InputError("--spp " + std::to_string(options.spp), "must be 1 .. 2^32");
     return {0, options.spp};
 }
 
-/// Samples can be added to the end of what is there.
-void requireBeginning(const ReferenceState& state, const SampleRange& range, const std::string& place)
+/// Samples can be added to the end of what is there. `open`: the range has no end yet.
+void requireBeginning(const ReferenceState& state, const SampleRange& range, bool open, const std::string& place)
 {
     std::vector<SampleRange> there = state.finished() ? state.sums.ranges : state.base.ranges;
     if (!state.finished()) there.push_back(state.target);
-    if (there.front().begin != range.begin || there.back().end > range.end)
+    if (there.front().begin != range.begin || (!open && there.back().end > range.end))
         throw InputError(place,
                          "holds samples " + describeRanges(there) + "; --resume can add to their end, but " + describeRanges({range}) + " was asked for");
 }
@@ -84,7 +87,7 @@ std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, cons
     }
     Checkpoint found = decodeCheckpoint(readFile(file.string()), file.string());
     requireSameIdentity(identity, "this run", found.identity, file.string());
-    requireBeginning(found.state, range, options.output);
+    requireBeginning(found.state, range, options.targetNoise != 0.0, options.output);
     return found;
 }
 
@@ -93,6 +96,9 @@ int runReference(const ReferenceArguments& options)
     if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
     const ReferenceSettings settings = chosenReference(options);
     const SampleRange range = chosenRange(options);
+    const bool toNoise = options.targetNoise != 0.0;
+    if (toNoise && !(options.targetNoise > 0.0 && options.targetNoise < 1.0))
+        throw InputError("--target-noise " + std::to_string(options.targetNoise), "must be above 0 and below 1: RMSE / mean of the irradiance, as 0.01");
     if (!(options.checkpointSeconds >= 0.0)) throw InputError("--checkpoint-seconds", "must be 0 or more");
     const std::optional<float> exposure = parseExposure(options.exposure);
     {
@@ -103,12 +109,12 @@ int runReference(const ReferenceArguments& options)
     const Scene scene = loadChosenScene(options);
     const Camera camera = chosenCamera(scene, options);
     const std::string sceneHash = hashScene(scene);
-    Checkpoint checkpoint{identifyReference(settings, camera, sceneHash), sampleUnit(scene), {}};
-    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
     Progress progress(options.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, settings);
+    Checkpoint checkpoint{identifyReference(tracer, camera, sceneHash), tracer.unit(), {}};
+    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
 
     const CatchInterrupts catching;
     const TraceOptions trace{.folder = options.output,
@@ -116,7 +122,7 @@ int runReference(const ReferenceArguments& options)
                              .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); },
                              .stop = &catching.asked()};
     ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(range);
-    const bool complete = traceRange(tracer, state, range, checkpoint, trace);
+    const bool complete = toNoise ? traceToNoise(tracer, state, options.targetNoise, checkpoint, trace) : traceRange(tracer, state, range, checkpoint, trace);
     progress.clear();
     if (!complete) {
         std::cerr << "lrsm: interrupted; what is done is in " << options.output << " (--resume continues)" << std::endl;
@@ -143,6 +149,8 @@ int runReference(const ReferenceArguments& options)
     else if (!options.quiet) {
         std::cout << "  " << checkpoint.state.sums.sampleCount() << " samples a pixel, " << options.model << ", " << double(rays.total()) * 1e-6
                   << " million rays in " << seconds << " s: " << json["rays"]["million_per_second"].get<double>() << " million a second\n";
+        if (const double noise = noiseOf(tracer, checkpoint.state.sums); std::isfinite(noise))
+            std::cout << "  noise of the irradiance, RMSE / mean: " << noise << "\n";
         if (options.bareLoop)
             std::cout << "  bare loop over the same kind of rays: " << json["bare_loop"]["million_per_second"].get<double>() << " million a second; ratio "
                       << json["bare_loop"]["ratio"].get<double>() << "\n";
@@ -162,17 +170,27 @@ Command addReference(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the results");
-    parser->add_option("--spp", options->spp, "samples a pixel: the range 0:N")->capture_default_str();
-    parser->add_option("--samples", options->samples, "A:B: only samples A .. B-1, to be merged with others (lrsm merge)");
+    CLI::Option* spp =
+        parser->add_option("--spp", options->spp, "samples a pixel: the range 0:N; for a known time, and for ranges to be merged")->capture_default_str();
+    CLI::Option* samples = parser->add_option("--samples", options->samples, "A:B: only samples A .. B-1, to be merged with others (lrsm merge)");
+    parser
+        ->add_option(
+            "--target-noise", options->targetNoise,
+            "as many samples as it takes for RMSE / mean of the irradiance to be at most this: for a truth of known quality (0.01: good, 0.003: very good)")
+        ->excludes(spp)
+        ->excludes(samples);
     parser->add_option("--model", options->model, "single: one diffuse bounce, what LRSM sets out to compute; full: every bounce, every BRDF")
         ->capture_default_str();
     parser->add_option("--specular-aperture", options->specularAperture, "degrees: adds the layer specular.cone, the mean radiance over this cone");
     parser->add_option("--seed", options->seed, "another seed gives an independent picture")->capture_default_str();
-    parser->add_option("--block", options->block, "samples stratified against each other, a power of two; the variance is taken over blocks")
+    parser
+        ->add_option("--block", options->block,
+                     "samples stratified against each other, a power of two; 64 from 512 samples on; the variance is taken over blocks")
         ->capture_default_str();
     parser->add_flag("--resume", options->resume, "continue what the folder holds, to the same bits; with a larger --spp, add to it");
     parser->add_option("--checkpoint-seconds", options->checkpointSeconds, "how often samples.bin is written; a kill loses no more")->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
+    parser->add_flag("--eye-side-only", options->eyeSide, "find lit surfaces by the paths' own rays alone: more noise, the same mean; to check the other way");
     parser->add_flag("--bare-loop", options->bareLoop, "also time the same rays without shading");
     return {parser, [options] { return runReference(*options); }};
 }

@@ -93,7 +93,7 @@ std::optional<Truth> findOrMakeTruth(const SceneCase& sceneCase, std::uint64_t s
     const ReferenceSettings settings = truthSettings(sceneCase, samples);
     progress.show(sceneCase.name + ": building the BVH", 0.0);
     const PathTracer tracer(sceneCase.scene, sceneCase.camera, settings);
-    Checkpoint checkpoint{identifyReference(settings, sceneCase.camera, sceneHash), tracer.unit(), {}};
+    Checkpoint checkpoint{identifyReference(tracer, sceneCase.camera, sceneHash), tracer.unit(), {}};
 
     const fs::path own = references.empty() ? fs::path() : fs::path(references) / Sha256().add(textOf(checkpoint.identity)).hex().substr(0, kNameDigits);
     std::optional<Checkpoint> earlier;

@@ -59,7 +59,7 @@ struct Arriving {
 Vec3 exactRadiance(Tracer& tracer, const Ray& ray, bool& hit)
 {
     PathRandom unused({}, {});  // a single bounce draws nothing
-    return incomingRadiance(tracer, ray, Transport::single, unused, hit);
+    return incomingRadiance(tracer, {ray}, {}, Transport::single, unused, hit);
 }
 
 /// The radiance of the first surface along an exact ray.

@@ -90,7 +90,7 @@ TEST_CASE("a closed box keeps its energy: all walls together collect rho Phi in 
     const double expected = flux * (transport == Transport::single ? 0.6 : 0.6 / 0.4);
     CAPTURE(collected, expected, std::sqrt(variance));
     CHECK(std::abs(collected - expected) < 6.0 * std::sqrt(variance) + 0.005 * expected);  // 0.5 %: the midpoint rule near the edges
-    CHECK(std::sqrt(variance) < 0.005 * expected);
+    CHECK(std::sqrt(variance) < 0.0025 * expected);
 }
 
 TEST_CASE("unbiased: agrees pixel by pixel with brute force from the eye's side and from the light's side", "[reference][ztest]")

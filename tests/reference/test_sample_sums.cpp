@@ -85,7 +85,7 @@ TEST_CASE("a checkpoint survives the way through its bytes, damage of any byte i
     checkpoint.state.sums = sumsOf({13, 60});
     checkpoint.state.sums.ranges.clear();
     checkpoint.state.base = sumsOf({0, 13});
-    checkpoint.state.chunkBlocks = {3, 2, 3};
+    checkpoint.state.tileBlocks = {3, 2, 3};
     checkpoint.state.rays = {1, 2, 3};
     const std::vector<std::byte> bytes = encodeCheckpoint(checkpoint);
     std::vector<unsigned char> raw(bytes.size());
@@ -95,7 +95,7 @@ TEST_CASE("a checkpoint survives the way through its bytes, damage of any byte i
     CHECK(read.identity == checkpoint.identity);
     CHECK(read.state.sums == checkpoint.state.sums);
     CHECK(read.state.base == checkpoint.state.base);
-    CHECK(read.state.chunkBlocks == checkpoint.state.chunkBlocks);
+    CHECK(read.state.tileBlocks == checkpoint.state.tileBlocks);
     CHECK(read.state.target == checkpoint.state.target);
     CHECK(read.state.rays == checkpoint.state.rays);
     CHECK(encodeCheckpoint(read) == bytes);

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "reference/light_guide.h"
+#include "reference/light_map.h"
+#include "reference/tracer.h"
+
+#include <vector>
+
+/// Lit points found from the lights' side, for many receivers to choose from.
+///
+/// Light that a point x receives by one more reflection is E f = integral of L(y) f(w) dw over directions w, y what is seen along w, f the receiver's response
+/// (<n.w> for irradiance). Two techniques find y, and each light's part of L is shared out between them by the balance heuristic (Veach 1997, 9.2.2):
+///
+///     a: draw w by its density p_a, trace the ray              share s_a = p_a / (p_a + c p_b)
+///     b: draw a ray of a light, take the point y it strikes    share s_b = c p_b / (p_a + c p_b)
+///
+/// p_b is b's density over w. A ray of the light through (u, v) of its square, drawn with density q(u, v) (light_density.h), strikes a surface of normal n at
+/// y:
+///
+///     p_b(w) = q |d(u, v) / dA| <n.l> d^2 / <n.-w>,    d = |y - x|
+///
+/// c, the candidates of b for each sample of a, may be any constant: s_a + s_b = 1 whatever it is.
+///
+/// Of a pool of N points b evaluates s_b L f / p_b everywhere but for what lies between, and looks only at a few, drawn in proportion to these weights w_j
+/// (resampled importance sampling: Talbot, Cline and Egbert, EGSR 2005). With V_j = 1 where x sees y_j,
+///
+///     estimate = (sum of w) / N * [s_b L f / p_b]_j V_j / w_j
+///
+/// has the mean (1/N) sum of [s_b L f / p_b]_i V_i over the choice of j, and integral of s_b L f dw over the pool, for any w_j that is positive where light can
+/// come.
+namespace lrsm {
+
+struct LightPool {
+    std::size_t drawn = 0;  ///< N: with the rays that found nothing lit
+
+    // One entry a lit point. What weighing reads, an array a number:
+    std::vector<float> x, y, z;     ///< position
+    std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
+    std::vector<float> nx, ny, nz;  ///< unit shading normal
+    std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
+    std::vector<float> brightness;  ///< sum of the radiance's channels, times how likely the point is to be seen
+    struct Point {
+        SurfaceHit surface;
+        Vec3 radiance{0.0f};  ///< diffuse, W/(m^2 sr)
+        std::uint32_t light = 0;
+    };
+    std::vector<Point> points;
+
+    std::size_t size() const { return points.size(); }
+    Vec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }
+    Vec3 geometricNormal(std::size_t i) const { return {gx[i], gy[i], gz[i]}; }
+};
+
+/// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.
+LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count);
+
+/// A shading normal turned away from who looks, or from its own triangle, depends on who looks (evaluateSurface): technique b leaves such points to a.
+bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toViewer);
+inline constexpr float kLeastFacing = 1e-4f;
+
+}  // namespace lrsm

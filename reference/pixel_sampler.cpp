@@ -1,0 +1,155 @@
+#include "reference/pixel_sampler.h"
+
+#include "core/base/elementary.h"
+#include "reference/directions.h"
+
+namespace lrsm {
+namespace {
+
+constexpr int kGroupBits = 6;
+constexpr int kPointsASampleBits = 4;       // log2 of a pool's points for each sample that a pixel draws from it
+constexpr std::size_t kSpecularStride = 4;  // weighing by a lobe costs as much as several by the cosine
+constexpr int kDrawBits = 1;                // log2 of the pool's points that a sample looks at
+constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
+constexpr float kFurtherCandidates = 8.0f;
+
+struct CosineResponse {
+    Vec3 normal;
+    Response operator()(const Vec3& direction) const
+    {
+        const float cosine = std::max(0.0f, glm::dot(normal, direction));
+        return {Vec3(cosine), cosine / kPi};
+    }
+};
+
+struct LobeResponse {
+    const Surface& surface;
+    Vec3 toEye;
+    Response operator()(const Vec3& direction) const { return {evaluateSpecular(surface, direction, toEye), lobeDensity(surface, toEye, direction)}; }
+};
+
+}  // namespace
+
+TileSampler::TileSampler(const PathTracer& tracer, std::size_t tile, const BlockKey& key)
+    : tracer_(tracer),
+      settings_(tracer.settings()),
+      tile_(tile),
+      key_(key),
+      channels_(tracer.channels()),
+      groupBits_(std::min(key.blockBits, kGroupBits)),
+      cosHalf_(float(sinCos(0.5 * double(settings_.specularApertureDegrees) * 3.14159265358979323846 / 180.0).cos))
+{
+    const PrimaryHits& primary = tracer.primary();
+    forEachPixel(tracer.guide().tiles, tile, [&](std::size_t pixel, std::size_t) {
+        specular_ |= primary.covered.texels[pixel] && primary.surface.texels[pixel].specularColor != Vec3(0.0f);
+    });
+    guide_ = tracer.guide().guideFor(tile);
+    const auto technique = [&](const LightDensity& density, float candidates) {
+        return LightTechnique{tracer.guide().maps, density.empty() ? nullptr : &density, candidates};
+    };
+    for (Draws* draws : {&diffuse_, &lobe_, &cone_})
+        draws->light = {technique(guide_.density, kPoolCandidates), technique(tracer.guide().further.density, kFurtherCandidates), nullptr, &scratch_};
+    cone_.light.first = {};  // its rays look where they must
+}
+
+GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
+{
+    GroupPools pools;
+    const RayCounts before = tracer.counts;
+    const std::uint32_t group = first >> groupBits_, count = 1u << (groupBits_ + kPointsASampleBits);
+    const auto draw = [&](const TileGuide& guide, Purpose purpose) {
+        if (guide.density.empty()) return LightPool{};
+        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count);
+    };
+    pools.diffuse = draw(guide_, Purpose::diffusePoints);
+    pools.furtherDiffuse = draw(tracer_.guide().further, Purpose::furtherDiffusePoints);
+    // Their own for the lobe, so that the variances of both parts add up.
+    if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints);
+    if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints);
+    if (first != group << groupBits_) tracer.counts = before;
+    return pools;
+}
+
+void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group)
+{
+    const PrimaryHits& primary = tracer_.primary();
+    pixel_ = std::uint32_t(pixel);
+    surface_ = &primary.surface.texels[pixel];
+    toEye_ = primary.toEye.texels[pixel];
+    receiver_ = receiverAt(tracer, *surface_);
+    diffusePoints_ = key_.points(pixel_, Purpose::diffuseDirection);
+    diffuse_.pool = &pools.diffuse;
+    diffuse_.choices = key_.points(pixel_, Purpose::diffusePool, kDrawBits);
+    diffuse_.light.furtherPool = pools.furtherDiffuse.size() > 0 ? &pools.furtherDiffuse : nullptr;
+    diffuse_.weights.weighDiffuse(pools.diffuse, receiver_, kPoolCandidates);
+    if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return;
+
+    lobePoints_ = key_.points(pixel_, Purpose::lobeDirection);
+    lobe_.pool = &pools.lobe;
+    lobe_.choices = key_.points(pixel_, Purpose::lobePool, kDrawBits);
+    lobe_.light.furtherPool = cone_.light.furtherPool = pools.furtherLobe.size() > 0 ? &pools.furtherLobe : nullptr;
+    const float u = key_.points(pixel_, Purpose::lobeSubset).point(group << groupBits_).u;
+    const auto start = std::size_t(u * float(kSpecularStride));
+    lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, LobeResponse{*surface_, toEye_}, start, kSpecularStride);
+    if (channels_ < kConeChannels) return;
+    conePoints_ = key_.points(pixel_, Purpose::coneDirection);
+}
+
+Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
+{
+    const auto store = [](Sample& sample, int channel, const Vec3& value) {
+        for (int c = 0; c < 3; ++c) sample[std::size_t(channel + c)] = value[c];
+    };
+    Sample sample{};
+    bool hit = false;
+    const CosineResponse cosine{surface_->normal};
+    const Vec3 diffuseDirection = cosineDirection(surface_->normal, diffusePoints_.point(index));
+    store(sample, kIrradiance,
+          traced(tracer, diffuseDirection, cosine(diffuseDirection), diffuse_.light, Purpose::diffusePath, index, hit) +
+              connected(tracer, diffuse_, index, cosine));
+    sample[kOpacity] = hit ? 1.0f : 0.0f;
+    if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return sample;
+
+    const LobeResponse lobe{*surface_, toEye_};
+    const Vec3 lobeDrawn = lobeDirection(*surface_, toEye_, lobePoints_.point(index));
+    const Response reflected = lobe(lobeDrawn);
+    Vec3 value = connected(tracer, lobe_, index, lobe);
+    if (reflected.value != Vec3(0.0f)) value += traced(tracer, lobeDrawn, reflected, lobe_.light, Purpose::lobePath, index, hit);
+    store(sample, kLobe, value);
+    if (channels_ < kConeChannels) return sample;
+
+    // The mean over the cone: f and p_a are both 1 / its solid angle.
+    const float coneDensity = 1.0f / (2.0f * kPi * (1.0f - cosHalf_));
+    const Vec3 inCone = coneDirection(mirrored(toEye_, surface_->normal), cosHalf_, conePoints_.point(index));
+    store(sample, kCone, traced(tracer, inCone, {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
+    return sample;
+}
+
+/// Technique a: f / p_a times the radiance along one ray, 0 below the geometric horizon: the surface itself is in the way there.
+Vec3 TileSampler::traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index,
+                         bool& hit) const
+{
+    hit = true;
+    if (!(glm::dot(surface_->geometricNormal, direction) > 0.0f)) return Vec3(0.0f);
+    PathRandom random = key_.path(pixel_, purpose, index);
+    const PathStart start{rayFrom(tracer, *surface_, direction, RayKind::bounce), response.density};
+    const Vec3 radiance = incomingRadiance(tracer, start, light, settings_.transport, random, hit);
+    return response.density > 0.0f ? response.value / response.density * radiance : Vec3(0.0f);
+}
+
+/// Technique b: one of the pool's points.
+template <class Respond>
+Vec3 TileSampler::connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const
+{
+    if (!draws.weights.any()) return Vec3(0.0f);
+    Vec3 sum(0.0f);
+    for (std::uint32_t draw = 0; draw < 1u << kDrawBits; ++draw) {
+        const Choice chosen = draws.weights.choose(draws.choices.point(index << kDrawBits | draw).u);
+        Vec3 direction;
+        const Vec3 response = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, direction);
+        if (response != Vec3(0.0f)) sum += response * chosen.overDensity * radianceFrom(tracer, *draws.pool, chosen.index, receiver_, direction);
+    }
+    return sum / float(1u << kDrawBits);
+}
+
+}  // namespace lrsm
