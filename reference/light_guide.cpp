@@ -10,22 +10,22 @@ constexpr double kPriorTries = 16.0, kPriorReach = 0.5;  // what is taken for gr
 
 }  // namespace
 
-LightGuideCounts::LightGuideCounts(const LightGrids& grids) : side_(grids.side()), light(grids.texels()), tried(grids.texels()), reached(grids.texels()) {}
+SpreadCounts::SpreadCounts(const LightGrids& grids) : side(grids.side()), light(grids.texels()), tried(grids.texels()), reached(grids.texels()) {}
 
-void LightGuideCounts::add(const TexelCount& count, std::uint32_t weight)
+void SpreadCounts::add(const TexelCount& count, std::uint32_t weight)
 {
-    const std::size_t column = count.texel % side_, row = count.texel / side_ % side_, square = count.texel / (side_ * side_) * side_ * side_;
-    for (std::size_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 1, side_ - 1); ++r)
-        for (std::size_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 1, side_ - 1); ++c) {
+    const std::size_t column = count.texel % side, row = count.texel / side % side, square = count.texel / (side * side) * side * side;
+    for (std::size_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 1, side - 1); ++r)
+        for (std::size_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 1, side - 1); ++c) {
             const std::uint32_t tent = weight * kTent[r + 1 - row] * kTent[c + 1 - column];
-            const std::size_t at = square + r * side_ + c;
+            const std::size_t at = square + r * side + c;
             light[at] += tent * count.light;
             tried[at] += tent * count.tried;
             reached[at] += tent * count.reached;
         }
 }
 
-std::uint64_t LightGuideCounts::totalLight() const
+std::uint64_t SpreadCounts::totalLight() const
 {
     std::uint64_t total = 0;
     for (const std::uint32_t count : light) total += count;
@@ -36,7 +36,7 @@ TileGuide LightGuide::guideFor(std::size_t tile) const
 {
     if (!useful() || (!even.empty() && even[tile])) return {};
     // A tile has seen little: its neighbours have seen the like, and so have neighbouring texels.
-    LightGuideCounts counts(*grids);
+    SpreadCounts counts(*grids);
     const int columns = tiles.columns(), x = int(tile) % columns, y = int(tile) / columns;
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, tiles.rows() - 1); ++ny)
         for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, columns - 1); ++nx)

@@ -27,17 +27,13 @@ struct TileGuide {
 };
 
 /// Counts of all texels, each spread over its neighbours by a tent of 3 x 3.
-class LightGuideCounts {
-  public:
-    explicit LightGuideCounts(const LightGrids& grids);
+struct SpreadCounts {
+    explicit SpreadCounts(const LightGrids& grids);
     void add(const TexelCount& count, std::uint32_t weight);
     std::uint64_t totalLight() const;
 
-  private:
-    std::size_t side_;
-
-  public:
-    std::vector<std::uint32_t> light, tried, reached;  ///< [texel]
+    std::size_t side;
+    std::vector<std::uint32_t> light, tried, reached;  ///< [texel], as in TexelCount
 };
 
 /// Counts of light found, in texels of the lights' squares: integers, a function of scene, view, size and model alone.

@@ -181,7 +181,7 @@ void countBrightness(std::vector<Findings>& findings, std::vector<Finding> Findi
 /// What all tiles have found, smoothed, and a uniform part; empty where nothing was found.
 std::vector<float> baseWeights(const LightGrids& grids, std::span<const Finding> points)
 {
-    LightGuideCounts counts(grids);
+    SpreadCounts counts(grids);
     for (const TexelCount& one : countTexels(grids, points)) counts.add(one, 1);
     const auto total = double(counts.totalLight());
     if (total == 0.0) return {};

@@ -13,6 +13,21 @@ constexpr int kDrawBits = 1;                // log2 of the pool's points that a 
 constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
+struct CosineResponse {
+    Vec3 normal;
+    Response operator()(const Vec3& direction) const
+    {
+        const float cosine = std::max(0.0f, glm::dot(normal, direction));
+        return {Vec3(cosine), cosine / kPi};
+    }
+};
+
+struct LobeResponse {
+    const Surface& surface;
+    Vec3 toEye;
+    Response operator()(const Vec3& direction) const { return {evaluateSpecular(surface, direction, toEye), lobeDensity(surface, toEye, direction)}; }
+};
+
 }  // namespace
 
 TileSampler::TileSampler(const PathTracer& tracer, std::size_t tile, const BlockKey& key)
@@ -54,25 +69,6 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     if (first != group << groupBits_) tracer.counts = before;
     return pools;
 }
-
-namespace {
-
-struct CosineResponse {
-    Vec3 normal;
-    Response operator()(const Vec3& direction) const
-    {
-        const float cosine = std::max(0.0f, glm::dot(normal, direction));
-        return {Vec3(cosine), cosine / kPi};
-    }
-};
-
-struct LobeResponse {
-    const Surface& surface;
-    Vec3 toEye;
-    Response operator()(const Vec3& direction) const { return {evaluateSpecular(surface, direction, toEye), lobeDensity(surface, toEye, direction)}; }
-};
-
-}  // namespace
 
 void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group)
 {

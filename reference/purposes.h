@@ -4,8 +4,7 @@
 
 #include <cstdint>
 
-/// What a random draw is for: the last word of Philox's counter, which keeps the streams of one pixel or tile apart. Paths have theirs in the high byte
-/// (sample_layout of the counter: pixel, block, sample, purpose and vertex).
+/// What a random draw is for: the last word of Philox's counter, which keeps the streams of one pixel or tile apart. Paths have theirs in its high byte.
 namespace lrsm {
 
 enum class Purpose : std::uint32_t {

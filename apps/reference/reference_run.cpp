@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostSamples = std::uint64_t(1) << 32;
 constexpr std::uint64_t kFirstBlocks = 8;  // before their spread says how large the noise is
-constexpr double kGoalMargin = 1.01;          // rather reach the target than come again
+constexpr double kGoalMargin = 1.01;       // rather reach the target than come again
 
 const char* modelName(Transport transport)
 {
@@ -157,7 +157,7 @@ Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camer
                         {"from_lights", settings.fromLights},
                         {"specular_aperture_degrees", settings.specularApertureDegrees}};
     json["scene"] = sceneJson(scene, sceneHash);
-    json["camera"] = cameraJson(camera, Angle::degrees, scene.origin);
+    json["camera"] = cameraJson(camera);
     json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
     json["rays"] = speedJson(state.rays, state.seconds);
     json["not_finite_samples"] = state.invalidSamples;

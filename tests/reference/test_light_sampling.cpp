@@ -43,8 +43,8 @@ Scene roomWith(std::initializer_list<Mesh> furniture, std::vector<Light> lights)
 std::vector<Mesh> paperBox(const Vec3& low, const Vec3& size, bool open)
 {
     const Vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-    std::vector<Mesh> walls = {rectangle(low, x, y, 1),     rectangle(low + z, x, y, 1), rectangle(low, y, z, 1),
-                               rectangle(low + x, y, z, 1), rectangle(low + y, x, z, 1)};
+    std::vector<Mesh> walls = {rectangle(low, x, y, 1), rectangle(low + z, x, y, 1), rectangle(low, y, z, 1), rectangle(low + x, y, z, 1),
+                               rectangle(low + y, x, z, 1)};
     if (!open) walls.push_back(rectangle(low, x, z, 1));
     return walls;
 }
@@ -139,7 +139,8 @@ TEST_CASE("light map: rays, coordinates and densities of one light belong togeth
             CHECK(double(there->at.u) == Approx(double(at.u)).margin(2e-6));
             CHECK(double(there->at.v) == Approx(double(at.v)).margin(2e-6));
             constexpr float step = 2e-3f;
-            const glm::dvec3 du = (pointAt(step, 0) - pointAt(-step, 0)) / (2.0 * double(step)), dv = (pointAt(0, step) - pointAt(0, -step)) / (2.0 * double(step));
+            const glm::dvec3 du = (pointAt(step, 0) - pointAt(-step, 0)) / (2.0 * double(step)),
+                             dv = (pointAt(0, step) - pointAt(0, -step)) / (2.0 * double(step));
             const double area = std::abs(glm::dot(glm::cross(du, dv), glm::dvec3(ray->direction)));
             if (std::isfinite(area)) CHECK(there->perArea * area == Approx(1.0).epsilon(2e-3));
         }
@@ -226,8 +227,7 @@ TEST_CASE("from the lights' side, too: the same mean in every layer, and less no
     }
     requireSameMean(sides.eye.irradiance, sides.eye.irradianceVariance, sides.both.irradiance, sides.both.irradianceVariance, sides.covered);
     CHECK(meanVariance(sides.both.irradianceVariance) * 512 < one.mostVariance * meanVariance(sides.eye.irradianceVariance) * 1024);
-    if (which == 1)
-        requireSameMean(sides.eye.combined, sides.eye.combinedVariance, sides.both.combined, sides.both.combinedVariance, sides.covered);
+    if (which == 1) requireSameMean(sides.eye.combined, sides.eye.combinedVariance, sides.both.combined, sides.both.combinedVariance, sides.covered);
 }
 
 TEST_CASE("from the lights' side, too: the same mean with all bounces", "[reference][light-sampling]")
