@@ -84,10 +84,11 @@ int run(const Options& options)
     const Requirements needs = analyseRequirements(scene, settings.force);
 
     Progress progress(options.quiet);
-    RecordOptions record{
-        .width = size.x, .height = size.y, .only = options.only, .dds = !options.noDds, .progress = [&](const std::string& pass, double fraction) {
-            progress.show(pass, fraction);
-        }};
+    RecordOptions record;
+    record.width = size.x, record.height = size.y;
+    record.only = options.only;
+    record.dds = !options.noDds;
+    record.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     record.finished = [&](const Frame& frame) {
         progress.clear();
         say(passMessages(frame.passes));
