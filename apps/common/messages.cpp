@@ -96,8 +96,9 @@ void addExtent(const Scene& scene, const Camera& camera, const Settings& setting
 {
     if (reachIsPart(scene) && settings.voxel.extent == Extent::reach)
         lines.push_back("voxel grid and light maps cover " + metres(double(longest(scene.reach))) + " about camera and lights, of a scene of " +
-                        metres(double(longest(scene.bounds))) +
-                        ": beyond, direct light has no shadows and nothing occludes or reflects indirect light (--bounds scene covers all of it)");
+                        metres(double(longest(scene.bounds))) + ": beyond, " +
+                        (settings.direct.shadows == Shadows::exact ? "" : "direct light has no shadows and ") +
+                        "nothing occludes or reflects indirect light (--bounds scene covers all of it)");
     constexpr double kVoxelsAcross = 2.0;
     const double voxel = double(gridOf(scene, settings.voxel).voxelSize);
     if (const std::optional<double> feature = nearFeature(scene, camera); feature && kVoxelsAcross * voxel > *feature)

@@ -159,6 +159,6 @@ TEST_CASE("the calibration frame is no preset's: its settings are pinned", "[swe
     for (const auto& [key, value] : pinned) CHECK(std::stod(value) == json.at(key).get<double>());
     CHECK(json.at("method") == "lrsm");
     json.erase("method");
-    CHECK(Sha256().add(json.dump()).hex() == "7c589898072fa56e56e3478de6b2167d8901acb99569c04ad1bbaff9950471ff");
+    CHECK(Sha256().add(json.dump()).hex() == "99b51297c12113da2199da0dd4a796b5c1b057a6f51f21a7539f7e0931234d84");
     CHECK(calibration().run().cpu > 0.0);
 }

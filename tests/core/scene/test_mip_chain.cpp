@@ -83,7 +83,7 @@ TEST_CASE("mip chains: each texel is the mean of the area it covers, colours in 
     }
 }
 
-TEST_CASE("mip chains: down to one texel, for the uses that there are; a constant stays", "[textures]")
+TEST_CASE("mip chains: down to one texel, for the uses that there are, and a constant stays", "[textures]")
 {
     Scene scene = texturedFloor(Image<Rgba8>(20, 6, {200, 17, 90, 128}), 1);
     const Texture& texture = scene.textures[0];
