@@ -1,5 +1,6 @@
 #include "core/scene/texture_sampling.h"
 
+#include "core/base/elementary.h"
 #include "core/base/formats.h"
 
 #include <array>
