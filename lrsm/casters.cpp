@@ -41,23 +41,13 @@ struct Axes {
     Vec3 toWorld(const DVec3& p) const { return Vec3(right * p.x + up * p.y + forward * p.z); }
 };
 
-bool contains(const Aabb& box, const Vec3& p)
-{
-    return glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThanEqual(p, box.max));
-}
-
-Vec3 cornerOf(const Aabb& box, int i)
-{
-    return {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
-}
-
 template <class Visit>
 void forEachTriangleOutside(const Scene& scene, const Aabb& box, Visit&& visit)
 {
     for (const Mesh& mesh : scene.meshes)
         for (const auto& t : mesh.triangles) {
             const std::array<Vec3, 3> p = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-            if (!(contains(box, p[0]) && contains(box, p[1]) && contains(box, p[2]))) visit(p);
+            if (!(box.contains(p[0]) && box.contains(p[1]) && box.contains(p[2]))) visit(p);
         }
 }
 
@@ -65,8 +55,8 @@ Aabb overFootprint(const Aabb& reach, const Scene& scene, const Light& light)
 {
     const Axes axes(light);
     DVec3 low(1e300), high(-1e300);
-    for (int i = 0; i < 8; ++i) {
-        const DVec3 p = axes.toLight(cornerOf(reach, i));
+    for (unsigned i = 0; i < 8; ++i) {
+        const DVec3 p = axes.toLight(reach.corner(i));
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
@@ -84,7 +74,7 @@ Aabb overFootprint(const Aabb& reach, const Scene& scene, const Light& light)
 Aabb beforeFarEnd(const Aabb& reach, const Scene& scene, const Light& light)
 {
     float farEnd = 0.0f;
-    for (int i = 0; i < 8; ++i) farEnd = std::max(farEnd, glm::length(cornerOf(reach, i) - light.position));
+    for (unsigned i = 0; i < 8; ++i) farEnd = std::max(farEnd, glm::length(reach.corner(i) - light.position));
     Aabb box = reach;
     forEachTriangleOutside(scene, reach, [&](const std::array<Vec3, 3>& p) {
         const Vec3 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]), closest = glm::clamp(light.position, low, high);

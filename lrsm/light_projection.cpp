@@ -2,18 +2,9 @@
 
 #include "core/base/elementary.h"
 
-#include <array>
-
 namespace lrsm {
 
 namespace {
-
-std::array<Vec3, 8> cornersOf(const Aabb& box)
-{
-    std::array<Vec3, 8> corners;
-    for (unsigned i = 0; i < 8; ++i) corners[i] = {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
-    return corners;
-}
 
 /// far > near by more than the rounding of coordinates, so that depths can be divided by the range, whatever the scene (a point, a plane
 /// facing the light). Relative to the map's width or the light's distance: the scene's unit must not matter.
@@ -29,8 +20,10 @@ void widenEmptyRange(LightProjection& projection)
 Aabb alongLight(const LightProjection& projection, const Aabb& box)
 {
     Aabb inLight;
-    for (const Vec3& corner : cornersOf(box))
+    for (unsigned i = 0; i < 8; ++i) {
+        const Vec3 corner = box.corner(i);
         inLight.include(Vec3(glm::dot(corner, projection.right), glm::dot(corner, projection.up), glm::dot(corner, projection.forward)));
+    }
     return inLight;
 }
 
@@ -57,7 +50,7 @@ void fitPerspective(LightProjection& projection, const Aabb& bounds, const Aabb&
     const Vec3 closest = glm::clamp(projection.position, sceneBounds.min, sceneBounds.max);
     projection.depthNear = glm::length(closest - projection.position);
     projection.depthFar = projection.depthNear;
-    for (const Vec3& corner : cornersOf(bounds)) projection.depthFar = std::max(projection.depthFar, glm::length(corner - projection.position));
+    for (unsigned i = 0; i < 8; ++i) projection.depthFar = std::max(projection.depthFar, glm::length(bounds.corner(i) - projection.position));
 }
 
 /// Axial distance of the near plane of a spot or cube face, metres. Outside the bounds nothing is nearer than depthNear, seen in the map's

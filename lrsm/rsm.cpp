@@ -21,11 +21,11 @@ struct ShadedTexel {
     float depth = 1.0f;
 };
 
-/// Reflected radiance of a diffuse surface lit by the light alone: rho L_d <n.l> / pi.
-ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const LightProjection& projection, const SurfaceHit& hit, TextureFilter filter)
+/// Reflected radiance of a diffuse surface at `pWorld`, `place` in the map, lit by the light alone: rho L_d <n.l> / pi.
+ShadedTexel shadeTexel(const Scene& scene, const LightSampler& light, const LightProjection& projection, const SurfaceHit& hit, const Vec3& pWorld,
+                       const LightSpacePoint& place, TextureFilter filter)
 {
-    const Vec3 pWorld = positionOf(scene, hit), toLight = directionToLight(projection, pWorld);
-    const LightSpacePoint place = projectToLight(projection, pWorld);
+    const Vec3 toLight = directionToLight(projection, pWorld);
     const PixelSpacing spacing{projection.right * place.texelSize, -projection.up * place.texelSize};
     const Surface surface = evaluateSurface(scene, hit, toLight, filter == TextureFilter::trilinear ? &spacing : nullptr);
     const float nDotL = glm::clamp(glm::dot(surface.normal, toLight), 0.0f, 1.0f);
@@ -45,10 +45,10 @@ bool coversPart(const Scene& scene, const RsmSettings& settings)
 }
 
 /// Farther than the range that the map was fitted to: it stays empty there, so that what lies beyond is lit and reflects nothing.
-bool isBeyond(const LightProjection& projection, const Vec3& pWorld)
+bool isBeyond(const LightSpacePoint& place)
 {
     constexpr float kRounding = 0x1p-16f;
-    return projectToLight(projection, pWorld).depth > 1.0f + kRounding;
+    return place.depth > 1.0f + kRounding;
 }
 
 void toHalf(RsmTexel& texel, HalfRounding rounding, ConversionCounts& counts)
@@ -100,8 +100,11 @@ Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs,
         for (std::size_t i = begin; i < end; ++i) {
             const Fragment& fragment = drawn.fragments.texels[i];
             if (fragment.triangle == kNoTriangle) continue;
-            if (part && isBeyond(rsm.projection, positionOf(scene, hitOf(drawn.firstTriangle, fragment)))) continue;
-            ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hitOf(drawn.firstTriangle, fragment), textureFilter);
+            const SurfaceHit hit = hitOf(drawn.firstTriangle, fragment);
+            const Vec3 pWorld = positionOf(scene, hit);
+            const LightSpacePoint place = projectToLight(rsm.projection, pWorld);
+            if (part && isBeyond(place)) continue;
+            ShadedTexel shaded = shadeTexel(scene, sampler, rsm.projection, hit, pWorld, place, textureFilter);
             shaded.texel.radiance *= rsm.preExposure;
             if (settings.storage == Storage::gpu) toHalf(shaded.texel, settings.halfRounding, counts[begin / kChunk]);
             rsm.texels.texels[i] = shaded.texel;

@@ -57,7 +57,7 @@ void visitLights(Tracer& tracer, const Ray& ray, const RayHit& hit, const Visit&
 {
     const float length2 = glm::dot(hit.scaledNormal, hit.scaledNormal);
     if (!(length2 > 0.0f)) return;
-    const Vec3 geometricNormal = hit.scaledNormal / std::sqrt(length2), position = struckPosition(tracer.scene(), hit.surface);
+    const Vec3 geometricNormal = hit.scaledNormal / std::sqrt(length2), position = positionOf(tracer.scene(), hit.surface);
     std::optional<Surface> surface;
     for (std::size_t k = 0; k < tracer.lights().size(); ++k) {
         const LightSample sample = tracer.lights()[k](position);

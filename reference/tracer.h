@@ -75,14 +75,6 @@ inline Ray rayFrom(const Tracer& tracer, const Surface& surface, const Vec3& dir
     return {surface.position + surface.geometricNormal * tracer.offset(surface.position), direction, 0.0f, kInfinity, kind};
 }
 
-/// Where a ray struck, without the material. As interpolated by evaluateSurface.
-inline Vec3 struckPosition(const Scene& scene, const SurfaceHit& hit)
-{
-    const Mesh& mesh = scene.meshes[hit.mesh];
-    const auto& triangle = mesh.triangles[hit.triangle];
-    return (1.0f - hit.b1 - hit.b2) * mesh.positions[triangle[0]] + hit.b1 * mesh.positions[triangle[1]] + hit.b2 * mesh.positions[triangle[2]];
-}
-
 /// Surfaces that turn the back of a single-sided material to the path stop it and reflect nothing.
 inline bool reflects(const Scene& scene, const RayHit& hit)
 {

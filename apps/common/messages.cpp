@@ -60,17 +60,6 @@ std::vector<std::string> oneAKind(const std::vector<std::string>& notes)
     return lines;
 }
 
-float longest(const Aabb& box)
-{
-    const Vec3 extent = box.extent();
-    return std::max({extent.x, extent.y, extent.z});
-}
-
-bool shines(const Light& light)
-{
-    return light.intensity != Vec3(0.0f);
-}
-
 /// Size of the small things in view: at least kSmallShare of what the camera meets is a mesh no larger.
 std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
 {
@@ -83,7 +72,7 @@ std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
             Aabb box;
             for (const auto& triangle : scene.meshes[hit.mesh].triangles)
                 for (const std::uint32_t v : triangle) box.include(scene.meshes[hit.mesh].positions[v]);
-            size = double(longest(box));
+            size = double(box.longestSide());
         }
         met.push_back(size);
     }
@@ -95,8 +84,8 @@ std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
 void addExtent(const Scene& scene, const Camera& camera, const Settings& settings, std::vector<std::string>& lines)
 {
     if (reachIsPart(scene) && settings.voxel.extent == Extent::reach)
-        lines.push_back("voxel grid and light maps cover " + metres(double(longest(scene.reach))) + " about camera and lights, of a scene of " +
-                        metres(double(longest(scene.bounds))) + ": beyond, " +
+        lines.push_back("voxel grid and light maps cover " + metres(double(scene.reach.longestSide())) + " about camera and lights, of a scene of " +
+                        metres(double(scene.bounds.longestSide())) + ": beyond, " +
                         (settings.direct.shadows == Shadows::exact ? "" : "direct light has no shadows and ") +
                         "nothing occludes or reflects indirect light (--bounds scene covers all of it)");
     constexpr double kVoxelsAcross = 2.0;
@@ -141,7 +130,7 @@ std::optional<std::string> shutIn(const Scene& scene, const Light& light)
             ++met[hit.mesh];
         }
     }
-    if (farthest > kNear * double(longest(scene.bounds))) return {};
+    if (farthest > kNear * double(scene.bounds.longestSide())) return {};
     const auto most = std::size_t(std::max_element(met.begin(), met.end()) - met.begin());
     return "light " + quoted(light.name) + " is inside of something solid: mesh " + quoted(scene.meshes[most].name) + " and what else is within " +
            metres(farthest) + " shut it in";

@@ -48,8 +48,8 @@ struct GatherOutput {
     }
 };
 
-/// The pixels of one tile, one after the other.
-template <Estimator estimator, class Sampler>
+/// The pixels of one tile by Algorithm 1, one after the other.
+template <class Sampler>
 void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
                 const GatherOutput& to, ConeCounts& counts)
 {
@@ -63,14 +63,14 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
             if (!gbuffer.covered(pixel)) continue;
             const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
             ResultRecorder recorder = to.diffuseAt(pixel);
-            const PixelGather diffuse = gatherDiffuse<estimator>(world, sampler, plan, receiver, scratch, counts, recorder);
+            const PixelGather diffuse = gatherDiffuse<Estimator::paper>(world, sampler, plan, receiver, scratch, counts, recorder);
             out.irradiance.texels[pixel] = diffuse.irradiance;
             out.opacity.texels[pixel] = diffuse.opacity;
             if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) continue;
             const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
             recorder = to.specularAt(pixel);
             out.specular.texels[pixel] =
-                gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
+                gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
         }
     }
 }
@@ -93,9 +93,7 @@ void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
         forTiles(gbuffer, out, [&] {
-            return [&](int tileX, int tileY, ConeCounts& counts) {
-                gatherTile<Estimator::paper>(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts);
-            };
+            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
         });
     });
 }

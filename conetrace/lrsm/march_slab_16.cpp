@@ -19,26 +19,8 @@
 #pragma GCC target("avx2,avx512f,avx512dq,avx512bw,avx512vl")
 #endif
 #define LRSM_LANES 16
-namespace lrsm::lanes16 {
-namespace {
-#include "core/base/lanes.inc"
-
-#include "voxel/sample_opacity_lanes.inc"
-
-#include "conetrace/frame/march_batch.inc"
-
-#include "lrsm/sample_lanes.inc"
-
-#include "conetrace/lrsm/march_slab_lanes.inc"
-}  // namespace
-
-void marchSlabBatch(const BatchWorld& world, const MarchSchedule& schedule, const ConeBatch& cones, MarchBatchScratch& scratch, ConeBatchResult& result,
-                    ConeCounts& counts)
-{
-    marchSlab(world, schedule, cones, scratch, result, counts);
-}
-
-}  // namespace lrsm::lanes16
+#define LRSM_LANES_NAMESPACE lanes16
+#include "conetrace/lrsm/march_slab_unit.inc"
 #if defined(__clang__)
 #pragma clang attribute pop
 #else

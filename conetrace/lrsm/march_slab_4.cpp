@@ -13,23 +13,5 @@
 #endif
 
 #define LRSM_LANES 4
-namespace lrsm::lanes4 {
-namespace {
-#include "core/base/lanes.inc"
-
-#include "voxel/sample_opacity_lanes.inc"
-
-#include "conetrace/frame/march_batch.inc"
-
-#include "lrsm/sample_lanes.inc"
-
-#include "conetrace/lrsm/march_slab_lanes.inc"
-}  // namespace
-
-void marchSlabBatch(const BatchWorld& world, const MarchSchedule& schedule, const ConeBatch& cones, MarchBatchScratch& scratch, ConeBatchResult& result,
-                    ConeCounts& counts)
-{
-    marchSlab(world, schedule, cones, scratch, result, counts);
-}
-
-}  // namespace lrsm::lanes4
+#define LRSM_LANES_NAMESPACE lanes4
+#include "conetrace/lrsm/march_slab_unit.inc"

@@ -39,6 +39,14 @@ struct Aabb {
     bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
     Vec3 centre() const { return 0.5f * (min + max); }
     Vec3 extent() const { return max - min; }
+    float longestSide() const
+    {
+        const Vec3 e = extent();
+        return std::max({e.x, e.y, e.z});
+    }
+    /// i in [0, 8): bit k set: the far side along axis k.
+    Vec3 corner(unsigned i) const { return {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z}; }
+    bool contains(const Vec3& p) const { return glm::all(glm::greaterThanEqual(p, min)) && glm::all(glm::lessThanEqual(p, max)); }
     bool operator==(const Aabb&) const = default;
 };
 

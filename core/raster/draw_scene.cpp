@@ -95,11 +95,4 @@ SurfaceHit hitOf(const std::vector<std::uint32_t>& firstTriangle, const Fragment
     return {.mesh = mesh, .triangle = fragment.triangle - firstTriangle[mesh], .b1 = fragment.b1, .b2 = fragment.b2};
 }
 
-Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
-{
-    const Mesh& mesh = scene.meshes[hit.mesh];
-    const auto& t = mesh.triangles[hit.triangle];
-    return (1.0f - hit.b1 - hit.b2) * mesh.positions[t[0]] + hit.b1 * mesh.positions[t[1]] + hit.b2 * mesh.positions[t[2]];
-}
-
 }  // namespace lrsm

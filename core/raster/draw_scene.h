@@ -22,7 +22,4 @@ SceneFragments drawScene(const Scene& scene, const Mat4& clipFromWorld, const Re
 /// The surface point under a covered fragment. firstTriangle as in SceneFragments.
 SurfaceHit hitOf(const std::vector<std::uint32_t>& firstTriangle, const Fragment& fragment);
 
-/// World position of a hit, interpolated as evaluateSurface does.
-Vec3 positionOf(const Scene& scene, const SurfaceHit& hit);
-
 }  // namespace lrsm

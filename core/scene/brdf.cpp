@@ -163,6 +163,12 @@ bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit)
     return !material.alphaMask || baseColorAt(scene, material, triangleAt(scene, hit)).a >= material.alphaCutoff;
 }
 
+Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
+{
+    const Triangle triangle = triangleAt(scene, hit);
+    return triangle.interpolate(triangle.mesh.positions);
+}
+
 Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer, const PixelSpacing* spacing)
 {
     Triangle triangle = triangleAt(scene, hit);

@@ -13,6 +13,9 @@ struct SurfaceHit {
     float b1 = 0.0f, b2 = 0.0f;
 };
 
+/// World position of a hit, interpolated as evaluateSurface does.
+Vec3 positionOf(const Scene& scene, const SurfaceHit& hit);
+
 struct Surface {
     Vec3 position{0.0f};
     Vec3 geometricNormal{0.0f};  ///< unit, of the triangle, on the side of `facing`

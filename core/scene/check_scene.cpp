@@ -59,8 +59,7 @@ void checkBounds(const Aabb& bounds)
     if (bounds.empty()) return;
     if (!isPlace(bounds.min) || !isPlace(bounds.max))
         throw InputError("scene", "its bounds are not finite or reach beyond 1e15 m; remove the stray vertices or scale it down");
-    const Vec3 extent = bounds.extent();
-    const float longest = std::max({extent.x, extent.y, extent.z});
+    const float longest = bounds.longestSide();
     require(longest == 0.0f || longest >= kMinSceneExtent, "scene", "longest side", longest, "0 or at least 1e-12 m; scale it up");
 }
 

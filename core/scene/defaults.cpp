@@ -49,7 +49,7 @@ float nearPlaneFor(const Camera& camera, const Aabb& bounds)
 void addDefaultCamera(Scene& scene)
 {
     const Vec3 extent = scene.bounds.extent(), centre = scene.bounds.centre();
-    const float largest = std::max({extent.x, extent.y, extent.z});
+    const float largest = scene.bounds.longestSide();
 
     // From the front, right and above; along the thin axis where the scene is a sheet, a little aside so that no axis is hit exactly.
     Vec3 toCamera(0.5f, 0.35f, 1.0f);

@@ -8,8 +8,7 @@ namespace {
 double brightestIrradiance(const Scene& scene)
 {
     const Aabb box = scene.bounds.empty() ? Aabb{Vec3(0.0f), Vec3(1.0f)} : reachIsPart(scene) ? scene.reach : scene.bounds;
-    const Vec3 extent = box.extent();
-    const double size = double(std::max({extent.x, extent.y, extent.z}));
+    const double size = double(box.longestSide());
     double brightest = 0.0;
     for (const Light& light : scene.lights) {
         const double intensity = double(std::max({light.intensity.x, light.intensity.y, light.intensity.z}));

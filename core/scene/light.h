@@ -35,6 +35,11 @@ class LightSampler {
     int face_ = 0;
 };
 
+inline bool shines(const Light& light)
+{
+    return light.intensity != Vec3(0.0f);
+}
+
 /// A point light as six cube faces; together they are exactly the point light.
 std::vector<Light> splitPointLight(const Vec3& position, const Vec3& intensity, float range, const std::string& name);
 

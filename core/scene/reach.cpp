@@ -1,6 +1,7 @@
 #include "core/scene/reach.h"
 
 #include "core/scene/coarse_view.h"
+#include "core/scene/light.h"
 
 #include <algorithm>
 
@@ -32,17 +33,6 @@ Met metFrom(const Scene& scene, const Viewpoint& from, bool light)
     return {std::move(hits), reach};
 }
 
-bool shines(const Light& light)
-{
-    return light.intensity != Vec3(0.0f);
-}
-
-float longest(const Aabb& box)
-{
-    const Vec3 extent = box.extent();
-    return std::max({extent.x, extent.y, extent.z});
-}
-
 /// Adds what is reached from one viewpoint: the vertices about it, and what its rays meet within `struckReaches` reaches.
 void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, double struckReaches)
 {
@@ -63,16 +53,16 @@ void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, d
 Aabb withNeighbours(Aabb box, const Scene& scene)
 {
     for (;;) {
-        const Vec3 margin(longest(box));
+        const Vec3 margin(box.longestSide());
         const Aabb about{box.min - margin, box.max + margin};
         Aabb grown = box;
         for (const Mesh& mesh : scene.meshes)
             for (const auto& triangle : mesh.triangles)
                 for (const std::uint32_t v : triangle) {
                     const Vec3& p = mesh.positions[v];
-                    if (glm::all(glm::greaterThanEqual(p, about.min)) && glm::all(glm::lessThanEqual(p, about.max))) grown.include(p);
+                    if (about.contains(p)) grown.include(p);
                 }
-        if (grown == box || kReachGain * longest(grown) > longest(scene.bounds)) return grown;
+        if (grown == box || kReachGain * grown.longestSide() > scene.bounds.longestSide()) return grown;
         box = grown;
     }
 }
@@ -93,15 +83,15 @@ Aabb measureReach(const Scene& scene, const Camera& camera)
     const bool sun = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.type == LightType::directional && shines(l); });
 
     Aabb box;
-    const auto gains = [&] { return box.empty() || kReachGain * longest(box) <= longest(scene.bounds); };
+    const auto gains = [&] { return box.empty() || kReachGain * box.longestSide() <= scene.bounds.longestSide(); };
     include(box, scene, viewpointOf(camera), false, sun ? kVertexReaches : 0.0);  // a sun lights all of what is seen, and what reflects it is there
     for (const Light& light : scene.lights) {
         if (!gains()) return scene.bounds;  // the ordinary case, before any light is looked at
         if (light.type != LightType::directional && shines(light)) include(box, scene, viewpointOf(light), true, 1.0);
     }
-    if (!gains() || box.empty() || !(longest(box) > 0.0f)) return scene.bounds;
+    if (!gains() || box.empty() || !(box.longestSide() > 0.0f)) return scene.bounds;
     const Aabb whole = withNeighbours(box, scene);
-    return kReachGain * longest(whole) <= longest(scene.bounds) ? whole : box;
+    return kReachGain * whole.longestSide() <= scene.bounds.longestSide() ? whole : box;
 }
 
 glm::dvec3 chooseOrigin(const Scene& scene, const Camera& camera)
