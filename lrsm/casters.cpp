@@ -1,34 +1,13 @@
 #include "lrsm/casters.h"
 
+#include "core/scene/cut_polygon.h"
+
 #include <array>
 
 namespace lrsm {
 namespace {
 
 using DVec3 = glm::dvec3;
-
-/// A convex polygon: a triangle cut by four planes has at most seven corners.
-struct Polygon {
-    std::array<DVec3, 8> corner;
-    std::size_t count = 0;
-    void push(const DVec3& p)
-    {
-        if (count < corner.size()) corner[count++] = p;
-    }
-};
-
-/// Keeps sign * (p[axis] - bound) <= 0 (Sutherland and Hodgman 1974, one side).
-Polygon cut(const Polygon& in, int axis, double sign, double bound)
-{
-    Polygon out;
-    for (std::size_t k = 0; k < in.count; ++k) {
-        const DVec3 &p = in.corner[k], &q = in.corner[(k + 1) % in.count];
-        const double dp = sign * (p[axis] - bound), dq = sign * (q[axis] - bound);
-        if (dp <= 0.0) out.push(p);
-        if ((dp < 0.0 && dq > 0.0) || (dp > 0.0 && dq < 0.0)) out.push(p + (q - p) * (dp / (dp - dq)));
-    }
-    return out;
-}
 
 /// Light-space axes of a directional light.
 struct Axes {
@@ -62,7 +41,7 @@ Aabb overFootprint(const Aabb& reach, const Scene& scene, const Light& light)
     }
     Aabb box = reach;
     forEachTriangleOutside(scene, reach, [&](const std::array<Vec3, 3>& triangle) {
-        Polygon piece;
+        CutPolygon piece;
         for (const Vec3& p : triangle) piece.push(axes.toLight(p));
         for (int axis = 0; axis < 2; ++axis) piece = cut(cut(piece, axis, -1.0, low[axis]), axis, 1.0, high[axis]);
         for (std::size_t k = 0; k < piece.count; ++k)

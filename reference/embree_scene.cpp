@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "reference/coincident.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -9,6 +10,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,7 @@ struct EmbreeScene::GeometryData {
     std::uint32_t mesh = 0;
     bool singleSided = false;
     bool alphaMask = false;
+    bool beyondReach = false;  ///< a triangle leads out of the scene's reach
 
     static void filter(const RTCFilterFunctionNArguments* arguments);
 };
@@ -29,6 +33,22 @@ namespace {
 {
     const RTCError code = rtcGetDeviceError(device);
     throw MachineError("Embree", what + " (error " + std::to_string(int(code)) + ")");
+}
+
+/// Does a triangle of the mesh lead out of what the scene is measured by?
+bool leadsBeyondReach(const Scene& scene, const Mesh& mesh)
+{
+    return reachIsPart(scene) && std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+               return std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) { return !scene.reach.contains(mesh.positions[v]); });
+           });
+}
+
+/// Is the triangle's plane ahead of the ray's near end? In double: over kilometres a float distance is less sure than a ray's offset.
+bool planeIsAhead(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle, const RTCRay& ray)
+{
+    const glm::dvec3 p0(mesh.positions[triangle[0]]), origin(ray.org_x, ray.org_y, ray.org_z), direction(ray.dir_x, ray.dir_y, ray.dir_z);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(mesh.positions[triangle[1]]) - p0, glm::dvec3(mesh.positions[triangle[2]]) - p0);
+    return glm::dot(normal, p0 - origin) / glm::dot(normal, direction) > double(ray.tnear);
 }
 
 RTCRay embreeRay(const Ray& ray)
@@ -49,7 +69,8 @@ RTCRay embreeRay(const Ray& ray)
 
 }  // namespace
 
-/// Called for hits on single-sided or alpha-masked geometry only; clears `valid` where the ray goes on. Our rays come one by one.
+/// Called for hits on geometry that is single-sided, alpha-masked or leads beyond the reach only; clears `valid` where the ray goes on. Our rays come one by
+/// one.
 void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* arguments)
 {
     if (arguments->valid[0] != -1) return;
@@ -66,13 +87,19 @@ void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* argume
             return;
         }
     }
+    const Mesh& mesh = data.scene->meshes[data.mesh];
+    if (data.beyondReach && !planeIsAhead(mesh, mesh.triangles[hit.primID], ray)) {
+        arguments->valid[0] = 0;
+        return;
+    }
     if (data.alphaMask && !passesAlphaTest(*data.scene, {data.mesh, hit.primID, hit.u, hit.v})) arguments->valid[0] = 0;
 }
 
 EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new GeometryData[scene.meshes.size()])
 {
-    const Vec3 largest = glm::max(glm::abs(scene.bounds.min), glm::abs(scene.bounds.max));
-    floor_ = scene.bounds.empty() ? 0.0f : 0x1p-22f * std::max({largest.x, largest.y, largest.z});
+    const Aabb& extent = extentOf(scene);
+    const Vec3 largest = glm::max(glm::abs(extent.min), glm::abs(extent.max));
+    floor_ = extent.empty() ? 0.0f : 0x1p-22f * std::max({largest.x, largest.y, largest.z});
 
     // One building thread: a parallel build may order the triangles of a leaf differently, and with them which of two coincident
     // triangles is hit. (The device's own `threads=1` would hold back all of oneTBB for as long as the device lives.)
@@ -83,10 +110,12 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
     rtcSetSceneFlags(embree_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_MEDIUM);
 
+    const std::vector<std::vector<std::uint8_t>> hidden = hiddenTriangles(scene);
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
         const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-        data_[m] = {&scene, m, !material.doubleSided, material.alphaMask};
+        data_[m] = {
+            .scene = &scene, .mesh = m, .singleSided = !material.doubleSided, .alphaMask = material.alphaMask, .beyondReach = leadsBeyondReach(scene, mesh)};
 
         RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copies, not shared buffers: Embree reads 16 bytes at the last vertex, beyond the end of ours.
@@ -94,8 +123,11 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
         void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(mesh.triangles[0]), mesh.triangles.size());
         if ((!vertices && !mesh.positions.empty()) || (!indices && !mesh.triangles.empty())) fail(device_.get(), "no memory for the triangles");
         std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<Vec3*>(vertices));
-        std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(indices));
-        if (data_[m].singleSided || data_[m].alphaMask) {
+        auto* triangles = static_cast<std::array<std::uint32_t, 3>*>(indices);
+        std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
+        for (std::size_t t = 0; t < hidden[m].size(); ++t)
+            if (hidden[m][t]) triangles[t] = {triangles[t][0], triangles[t][0], triangles[t][0]};  // no area: met by no ray
+        if (data_[m].singleSided || data_[m].alphaMask || data_[m].beyondReach) {
             rtcSetGeometryUserData(geometry, &data_[m]);
             rtcSetGeometryIntersectFilterFunction(geometry, &GeometryData::filter);
             rtcSetGeometryOccludedFilterFunction(geometry, &GeometryData::filter);

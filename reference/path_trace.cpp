@@ -50,7 +50,7 @@ void validate(const ReferenceSettings& s)
 
 double sampleUnit(const Scene& scene)
 {
-    const Vec3 extent = scene.bounds.empty() ? Vec3(1.0f) : scene.bounds.extent();
+    const Vec3 extent = extentOf(scene).empty() ? Vec3(1.0f) : extentOf(scene).extent();
     const double size2 = std::max(double(glm::dot(extent, extent)), 1e-30);
     double largest = 0.0;
     for (const Light& light : scene.lights) {

@@ -113,7 +113,9 @@ void addDepthSteps(const Scene& scene, const Settings& settings, std::vector<std
                     ", its texels are " + metres(texel);
     }
     if (coarse > 0)
-        lines.push_back(first + (coarse > 1 ? " (and " + std::to_string(coarse - 1) + " more)" : "") + ": shadows may be spotted; cover less with --bounds");
+        lines.push_back(first + (coarse > 1 ? " (and " + std::to_string(coarse - 1) + " more)" : "") + ": " +
+                        (settings.direct.shadows == Shadows::exact ? "indirect light may be misplaced" : "shadows may be spotted") +
+                        "; cover less with --bounds");
 }
 
 /// All around the light something stands within a quarter of the scene: the distance, and the mesh met most often.
@@ -130,7 +132,7 @@ std::optional<std::string> shutIn(const Scene& scene, const Light& light)
             ++met[hit.mesh];
         }
     }
-    if (farthest > kNear * double(scene.bounds.longestSide())) return {};
+    if (farthest > kNear * double(extentOf(scene).longestSide())) return {};
     const auto most = std::size_t(std::max_element(met.begin(), met.end()) - met.begin());
     return "light " + quoted(light.name) + " is inside of something solid: mesh " + quoted(scene.meshes[most].name) + " and what else is within " +
            metres(farthest) + " shut it in";

@@ -103,7 +103,7 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, const Requiremen
     checkDepthRatio(camera, scene.bounds);
     checkMaterials(scene);
     const int width = settings.width, height = settings.height;
-    const SceneFragments drawn = drawScene(scene, clipFromWorld(camera, width, height, scene.reach.empty() ? scene.bounds : scene.reach), needs, width, height);
+    const SceneFragments drawn = drawScene(scene, clipFromWorld(camera, width, height, extentOf(scene)), needs, width, height);
 
     GBuffer out;
     out.width = width;

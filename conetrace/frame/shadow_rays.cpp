@@ -92,7 +92,7 @@ bool mayBeLit(const GBuffer& gbuffer, const LightSampler& light, std::size_t i)
 /// Offset of every surface in the scene that does not come from its own coordinates.
 float sceneOffset(const Scene& scene)
 {
-    const Aabb& extent = scene.reach.empty() ? scene.bounds : scene.reach;  // a stray triangle far away moves nothing
+    const Aabb& extent = extentOf(scene);
     const Vec3 largest = glm::max(glm::abs(extent.min), glm::abs(extent.max));
     return kShadowRaySceneOffset * std::max({largest.x, largest.y, largest.z});
 }

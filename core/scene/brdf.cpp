@@ -5,6 +5,8 @@
 
 #include "core/scene/texture_sampling.h"
 
+#include <algorithm>
+
 namespace lrsm {
 namespace {
 
@@ -63,6 +65,17 @@ Vec2 movement(const Triangle& triangle, const Vec3& acrossAxis, const Vec3& toVi
 bool hasTexture(const Material& material)
 {
     return material.baseColorTexture || material.metallicRoughnessTexture || material.normalTexture;
+}
+
+/// Of triangles that lead out of the scene's reach in double: corners kilometres away round to more than what stands on them is thick. The point stays on the
+/// plane, however coarse the barycentrics.
+Vec3 positionAt(const Scene& scene, const Triangle& triangle)
+{
+    const std::vector<Vec3>& positions = triangle.mesh.positions;
+    if (!reachIsPart(scene) || std::all_of(triangle.index.begin(), triangle.index.end(), [&](std::uint32_t v) { return scene.reach.contains(positions[v]); }))
+        return triangle.interpolate(positions);
+    const double b1(triangle.b1), b2(triangle.b2);
+    return Vec3((1.0 - b1 - b2) * DVec3(positions[triangle.index[0]]) + b1 * DVec3(positions[triangle.index[1]]) + b2 * DVec3(positions[triangle.index[2]]));
 }
 
 Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
@@ -165,8 +178,7 @@ bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit)
 
 Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
 {
-    const Triangle triangle = triangleAt(scene, hit);
-    return triangle.interpolate(triangle.mesh.positions);
+    return positionAt(scene, triangleAt(scene, hit));
 }
 
 Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& toViewer, const PixelSpacing* spacing)
@@ -179,7 +191,7 @@ Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& t
     }
 
     Surface surface;
-    surface.position = triangle.interpolate(triangle.mesh.positions);
+    surface.position = positionAt(scene, triangle);
     setNormals(surface, scene, material, triangle, toViewer);
 
     float metallic = material.metallic, roughness = material.roughness;

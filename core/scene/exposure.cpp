@@ -7,7 +7,7 @@ namespace {
 
 double brightestIrradiance(const Scene& scene)
 {
-    const Aabb box = scene.bounds.empty() ? Aabb{Vec3(0.0f), Vec3(1.0f)} : reachIsPart(scene) ? scene.reach : scene.bounds;
+    const Aabb box = extentOf(scene).empty() ? Aabb{Vec3(0.0f), Vec3(1.0f)} : extentOf(scene);
     const double size = double(box.longestSide());
     double brightest = 0.0;
     for (const Light& light : scene.lights) {

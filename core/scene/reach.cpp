@@ -1,9 +1,12 @@
 #include "core/scene/reach.h"
 
 #include "core/scene/coarse_view.h"
+#include "core/scene/cut_polygon.h"
+#include "core/scene/invisible.h"
 #include "core/scene/light.h"
 
 #include <algorithm>
+#include <array>
 
 namespace lrsm {
 namespace {
@@ -67,6 +70,33 @@ Aabb withNeighbours(Aabb box, const Scene& scene)
     }
 }
 
+/// The part of a triangle inside a box.
+CutPolygon pieceWithin(const std::array<Vec3, 3>& triangle, const Aabb& box)
+{
+    CutPolygon piece;
+    for (const Vec3& p : triangle) piece.push(glm::dvec3(p));
+    for (int axis = 0; axis < 3 && piece.count > 0; ++axis) piece = cut(cut(piece, axis, -1.0, double(box.min[axis])), axis, 1.0, double(box.max[axis]));
+    return piece;
+}
+
+/// A sun lights the ground beyond what is seen, too, and that lights what is seen: of a ground without end a wall's point at height h gets the share
+/// 1 - h / sqrt(h^2 + d^2) from within d. Grown to the surfaces within kSunMargin of its own length.
+Aabb withSunlitGround(const Aabb& box, const Scene& scene)
+{
+    constexpr float kSunMargin = 1.0f;
+    const Vec3 margin(kSunMargin * box.longestSide());
+    const Aabb about{box.min - margin, box.max + margin};
+    Aabb grown = box;
+    for (const Mesh& mesh : scene.meshes) {
+        if (isDrawnNowhere(scene, mesh)) continue;
+        for (const auto& t : mesh.triangles) {
+            const CutPolygon piece = pieceWithin({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]}, about);
+            for (std::size_t k = 0; k < piece.count; ++k) grown.include(glm::clamp(Vec3(piece.corner[k]), scene.bounds.min, scene.bounds.max));
+        }
+    }
+    return grown;
+}
+
 }  // namespace
 
 std::optional<double> reachOf(const Scene& scene, const Camera& camera)
@@ -91,7 +121,8 @@ Aabb measureReach(const Scene& scene, const Camera& camera)
     }
     if (!gains() || box.empty() || !(box.longestSide() > 0.0f)) return scene.bounds;
     const Aabb whole = withNeighbours(box, scene);
-    return kReachGain * whole.longestSide() <= scene.bounds.longestSide() ? whole : box;
+    const Aabb& reached = kReachGain * whole.longestSide() <= scene.bounds.longestSide() ? whole : box;
+    return sun ? withSunlitGround(reached, scene) : reached;
 }
 
 glm::dvec3 chooseOrigin(const Scene& scene, const Camera& camera)

@@ -121,6 +121,12 @@ inline glm::dvec3 worldPlace(const Scene& scene, const Vec3& place)
     return scene.origin + glm::dvec3(place);
 }
 
+/// What picture, light and rounding are measured by: a stray triangle far away must move nothing.
+inline const Aabb& extentOf(const Scene& scene)
+{
+    return scene.reach.empty() ? scene.bounds : scene.reach;
+}
+
 /// Do voxel grid and light maps leave out part of the scene?
 inline bool reachIsPart(const Scene& scene)
 {

@@ -49,6 +49,25 @@ static ReferenceState renderState(const PathTracer& tracer, SampleRange range)
     return state;
 }
 
+TEST_CASE("a triangle far away takes no light: rays' offsets and sums are measured by the scene's reach", "[reference][extent]")
+{
+    const Vec3 at = GENERATE(Vec3(20000, 3, 5), Vec3(-4000, 20000, -9000), Vec3(0, -400000, 30));
+    Scene plain = spottedRoom(), stray = plain;
+    plain.reach = stray.reach = plain.bounds;
+    stray.meshes.push_back(rectangle(at, {1, 0, 0}, {0, 1, 0}));
+    stray.bounds.include(at);
+    const Camera camera = lookAt(Vec3(0, 0, 2.5f), Vec3(0, 0, -1));
+    const auto total = [&](const Scene& scene) {
+        const ReferenceFrame frame = renderReference(scene, camera, {.width = 16, .height = 16}, 64);
+        Vec3 sum(0.0f);
+        for (const Vec3& e : frame.irradiance.texels) sum += e;
+        for (const Vec3& e : frame.direct.texels) sum += e;
+        return sum;
+    };
+    const Vec3 expected = total(plain), got = total(stray);
+    for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).epsilon(1e-3));
+}
+
 TEST_CASE("inside a lit sphere: irradiance rho E in one bounce, rho E / (1 - rho) in all", "[reference][furnace]")
 {
     // Albedo 1/2 and E = 1 W/m^2 from the centre; the sphere is a polyhedron, which brings up to 0.3 %.

@@ -8,6 +8,8 @@
 
 #include "catch.h"
 
+#include <algorithm>
+
 using namespace lrsm;
 
 namespace {
@@ -142,4 +144,25 @@ TEST_CASE("messages: saturation, and what an extent costs", "[apps][messages]")
     CHECK(whole[0].find("a voxel is 35.4") == 0);
     scene.reach = measureReach(scene, scene.cameras[0]);
     CHECK(oneSays(extentMessages(scene, scene.cameras[0], Settings{}), "voxel grid and light maps cover"));
+}
+
+TEST_CASE("messages: depths of a light that are coarser than a bias", "[apps][messages]")
+{
+    // A plate 20 km up throws its shadow on a room of 4 m: depths over 20 km in texels of millimetres.
+    Scene scene = room();
+    scene.lights = {directionalLight(Vec3(0, -1, 0), Vec3(2.0f))};
+    scene.reach = scene.bounds;
+    scene.meshes.emplace_back().material = 0;
+    const float y = GENERATE(20.0f, 20000.0f);
+    addQuad(scene.meshes[2], Vec3(-1, y, 1), Vec3(1, y, 1), Vec3(1, y, -1), Vec3(-1, y, -1));
+    updateBounds(scene);
+    Settings settings;
+    const auto saysSteps = [&](const std::string& what) {
+        const std::vector<std::string> lines = extentMessages(scene, scene.cameras[0], settings);
+        return std::any_of(lines.begin(), lines.end(),
+                           [&](const std::string& line) { return line.find("come in steps of") != std::string::npos && line.find(what) != std::string::npos; });
+    };
+    CHECK(saysSteps("indirect light may be misplaced") == (y > 1000.0f));
+    settings.direct.shadows = Shadows::hard;
+    CHECK(saysSteps("shadows may be spotted") == (y > 1000.0f));
 }

@@ -1,5 +1,6 @@
 #include "core/scene/brdf.h"
 #include "core/scene/requirements.h"
+#include "core/scene/shapes.h"
 
 #include "catch.h"
 
@@ -257,4 +258,28 @@ TEST_CASE("the lobe at normal incidence has GGX's closed form, Schlick's rises t
     CHECK(evaluateSpecular(glossy(0.5f, Vec3(1)), {0, 0, -1}, {0, 0, 1}) == Vec3(0));
     CHECK(evaluateSpecular(glossy(0.5f, Vec3(1)), {0, 0, 1}, {1, 0, 0}) == Vec3(0));
     CHECK(isFinite(evaluateSpecular(glossy(0.0f, Vec3(1)), {0, 0, 1}, {0, 0, 1})));
+}
+
+TEST_CASE("brdf: a point of a triangle of kilometres lies on its plane", "[scene][extent]")
+{
+    Scene scene;
+    scene.materials = {diffuseMaterial("hill", Vec3(0.5f))};
+    Mesh& hill = scene.meshes.emplace_back();
+    hill.material = 0;
+    hill.positions = {Vec3(-71234.5f, -63211.1f, 50000.7f), Vec3(80123.3f, -55555.5f, 47111.9f), Vec3(1234.5f, 90321.7f, -60123.4f)};
+    hill.normals.assign(3, Vec3(0, 1, 0));
+    hill.triangles = {{0, 1, 2}};
+    scene.bounds = {Vec3(-1e5f), Vec3(1e5f)};
+    scene.reach = {Vec3(-5.0f), Vec3(5.0f)};
+    const glm::dvec3 p0(hill.positions[0]), e1 = glm::dvec3(hill.positions[1]) - p0, e2 = glm::dvec3(hill.positions[2]) - p0;
+    const glm::dvec3 normal = glm::normalize(glm::cross(e1, e2));
+    // About where the plane passes nearest to the origin: what stands there is metres large.
+    const glm::dvec3 foot = normal * glm::dot(normal, p0) - p0;
+    const double area2 = glm::dot(glm::cross(e1, e2), normal);
+    for (int i = 0; i < 50; ++i) {
+        const float b1 = float(glm::dot(glm::cross(foot, e2), normal) / area2) + 1e-5f * float(i), b2 = float(glm::dot(glm::cross(e1, foot), normal) / area2);
+        const Vec3 p = positionOf(scene, {.mesh = 0, .triangle = 0, .b1 = b1, .b2 = b2});
+        const Vec3 a = glm::abs(p);
+        CHECK(std::abs(glm::dot(glm::dvec3(p) - p0, normal)) < 0x1p-23 * double(std::max({a.x, a.y, a.z})));
+    }
 }

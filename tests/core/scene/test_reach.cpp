@@ -145,6 +145,24 @@ TEST_CASE("reach: ground, sky and stray triangles far away add nothing, in any u
     }
 }
 
+TEST_CASE("reach: with a sun, the ground that reflects to what is seen", "[scene][reach]")
+{
+    // A wall on a ground without end: at height h, 1 - h / sqrt(h^2 + d^2) of what the ground sends comes from within d.
+    Scene scene;
+    addBox(addMesh(scene), Vec3(-2, 0, -0.2f), Vec3(2, 3, 0));
+    addGround(scene, 0.0f, 1e4f);
+    scene.lights.push_back(directionalLight(Vec3(-0.3f, -1, -0.5f), Vec3(3.0f)));
+    scene.cameras.push_back(lookAt(Vec3(0, 1.5f, 5), Vec3(0, 1.2f, 0), Vec3(0, 1, 0), 0.8f));
+    const Aabb sunlit = reachAfter(scene);
+    const float h = 1.5f, d = sunlit.max.z;
+    CHECK(1.0f - h / std::sqrt(h * h + d * d) > 0.88f);
+    CHECK(sunlit.max.y == 3.0f);
+    CHECK(sunlit.longestSide() < 100.0f);
+    scene.lights[0].intensity = Vec3(0.0f);
+    scene.lights.push_back(spotLight(Vec3(0, 3, 3), Vec3(0, 0, 0), Vec3(60.0f), 0.5f, 0.7f));
+    CHECK(reachAfter(scene).longestSide() < 0.5f * sunlit.longestSide());
+}
+
 TEST_CASE("reach: what a camera sees far away is part of it when nothing nearer is", "[scene][reach]")
 {
     // A leaf beside the camera, a house a hundred metres on, a sun.
