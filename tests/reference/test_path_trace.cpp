@@ -68,6 +68,22 @@ TEST_CASE("a triangle far away takes no light: rays' offsets and sums are measur
     for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).epsilon(1e-3));
 }
 
+TEST_CASE("a hillside of 100 km throws no shadow on itself", "[reference][extent]")
+{
+    Scene scene;
+    const Vec3 u(1e5f, 3e3f, 100.0f), v(-200.0f, 6e4f, -8e4f);
+    scene.meshes = {rectangle(-0.501f * u - 0.5f * v, u, v)};
+    scene.materials = {diffuse(Vec3(0.5f))};
+    const Vec3 normal = glm::normalize(glm::cross(u, v));
+    scene.lights = {sun(-normal + Vec3(0.6f, 0, 0), 1.0f)};
+    for (const Vec3& p : scene.meshes[0].positions) scene.bounds.include(p);
+    scene.reach = {Vec3(-5), Vec3(5)};
+    const ReferenceFrame frame = renderReference(scene, lookAt(3.0f * normal, Vec3(0, 0, -1)), {.width = 48, .height = 48}, 1);
+    std::size_t seen = 0;
+    for (const Vec3& direct : frame.direct.texels) seen += direct != Vec3(0.0f) ? 1 : 0;
+    CHECK(seen == frame.direct.texels.size());
+}
+
 TEST_CASE("inside a lit sphere: irradiance rho E in one bounce, rho E / (1 - rho) in all", "[reference][furnace]")
 {
     // Albedo 1/2 and E = 1 W/m^2 from the centre; the sphere is a polyhedron, which brings up to 0.3 %.
