@@ -81,6 +81,19 @@ std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
     return met[std::size_t(kSmallShare * double(met.size() - 1))];
 }
 
+/// Faces of two materials in one plane, seen by a few rays at least.
+void addContested(const Scene& scene, const Camera& camera, std::vector<std::string>& lines)
+{
+    constexpr std::size_t kFew = 3;
+    if (!camera.perspective) return;
+    std::vector<CoarseHit> contested;
+    for (const CoarseHit& hit : coarseView(scene, viewpointOf(camera)).hits)
+        if (hit.contender) contested.push_back(hit);
+    if (contested.size() < kFew) return;
+    lines.push_back("meshes " + quoted(scene.meshes[contested[0].mesh].name) + " and " + quoted(scene.meshes[*contested[0].contender].name) +
+                    " lie in one plane in view: rounding decides which shows, and picture and reference may differ; move one of them by a millimetre or so");
+}
+
 void addExtent(const Scene& scene, const Camera& camera, const Settings& settings, std::vector<std::string>& lines)
 {
     if (reachIsPart(scene) && settings.voxel.extent == Extent::reach)
@@ -183,6 +196,7 @@ std::vector<std::string> extentMessages(const Scene& scene, const Camera& camera
     std::vector<std::string> lines;
     addExtent(scene, camera, settings, lines);
     addDepthSteps(scene, settings, lines);
+    addContested(scene, camera, lines);
     return lines;
 }
 

@@ -65,10 +65,19 @@ RayBox raysAt(const Pencil& pencil, const std::array<DVec3, 3>& corners)
     return box;
 }
 
+/// The triangle that is nearest along a ray so far.
+struct Struck {
+    DVec3 normal{0.0}, corners{0.0};  ///< not unit; their sum
+    bool inside = false;              ///< by more than its edge
+};
+
 /// Nearest hits of one mesh after the other.
 class Caster {
   public:
-    Caster(const Scene& scene, const Viewpoint& from) : scene_(scene), pencil_(from), nearest_(kCoarseEdge * kCoarseEdge), t_(nearest_.size(), 1e300) {}
+    Caster(const Scene& scene, const Viewpoint& from)
+        : scene_(scene), pencil_(from), struck_(kCoarseEdge * kCoarseEdge), nearest_(struck_.size()), t_(struck_.size(), 1e300)
+    {
+    }
 
     void cast(std::uint32_t m)
     {
@@ -111,18 +120,39 @@ class Caster {
         if (!((a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0))) return;
         const double t = glm::dot(normal, p[0]) / glm::dot(normal, direction);
         const auto i = std::size_t(y * kCoarseEdge + x);
-        if (!(t > 0.0 && t < t_[i])) return;
+        if (!(t > 0.0)) return;
+        const Struck struck{.normal = normal, .corners = p[0] + p[1] + p[2], .inside = a * b > 0.0 && b * c > 0.0};
+        const bool contends = struck.inside && contest(struck, t, mesh, i);
+        if (!(t < t_[i])) {
+            if (contends) nearest_[i].contender = mesh;
+            return;
+        }
+        const std::optional<std::uint32_t> contender = contends ? std::optional(nearest_[i].mesh) : std::nullopt;
         t_[i] = t;
+        struck_[i] = struck;
         // Within the triangle's own bounds: rounding must not lead out of the scene's.
         const DVec3 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]);
         nearest_[i] = {.distance = t * std::sqrt(glm::dot(direction, direction)),
                        .position = Vec3(pencil_.position + glm::clamp(direction * t, low, high)),
                        .mesh = mesh,
-                       .front = front};
+                       .front = front,
+                       .contender = contender};
+    }
+
+    /// Does a triangle lie in the plane of the nearest so far, over it and not on its corners, with another material?
+    bool contest(const Struck& struck, double t, std::uint32_t mesh, std::size_t i) const
+    {
+        constexpr double kSame = 1e-6;
+        const Struck& other = struck_[i];
+        if (!other.inside || struck.corners == other.corners || std::abs(t - t_[i]) > kSame * t) return false;
+        const DVec3 across = glm::cross(struck.normal, other.normal);
+        const double sine2 = glm::dot(across, across), lengths2 = glm::dot(struck.normal, struck.normal) * glm::dot(other.normal, other.normal);
+        return sine2 <= kSame * kSame * lengths2 && scene_.meshes[mesh].material != scene_.meshes[nearest_[i].mesh].material;
     }
 
     const Scene& scene_;
     Pencil pencil_;
+    std::vector<Struck> struck_;
     std::vector<CoarseHit> nearest_;
     std::vector<double> t_;
 };

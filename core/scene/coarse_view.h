@@ -2,6 +2,7 @@
 
 #include "core/scene/scene.h"
 
+#include <optional>
 #include <vector>
 
 /// What a camera or a light meets, by a few hundred rays and without any acceleration structure: enough to say how far it reaches, before a scene is posed
@@ -25,6 +26,8 @@ struct CoarseHit {
     Vec3 position{0.0f};
     std::uint32_t mesh = 0;
     bool front = true;  ///< the ray came from the triangle's front
+    /// Another material's mesh lies in the same plane there, by triangles of its own: which of them a picture shows is decided by rounding.
+    std::optional<std::uint32_t> contender;
 };
 
 inline constexpr int kCoarseEdge = 32;  ///< rays along an edge

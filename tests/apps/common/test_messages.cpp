@@ -166,3 +166,21 @@ TEST_CASE("messages: depths of a light that are coarser than a bias", "[apps][me
     settings.direct.shadows = Shadows::hard;
     CHECK(saysSteps("shadows may be spotted") == (y > 1000.0f));
 }
+
+TEST_CASE("messages: faces of two materials in one plane", "[apps][messages]")
+{
+    Scene scene = room();
+    scene.materials.push_back(diffuseMaterial("red", Vec3(0.7f, 0, 0), true));
+    Mesh& rug = scene.meshes.emplace_back();
+    rug.material = 1;
+    rug.name = "rug";
+    const float y = GENERATE(0.0f, 0.001f);
+    const bool sameCorners = GENERATE(false, true);
+    const float half = sameCorners ? 2.0f : 1.0f;
+    addQuad(rug, Vec3(-half, y, half), Vec3(half, y, half), Vec3(half, y, -half), Vec3(-half, y, -half));
+    const std::vector<std::string> lines = extentMessages(scene, scene.cameras[0], Settings{});
+    if (y == 0.0f && !sameCorners)
+        CHECK(oneSays(lines, "meshes \"floor\" and \"rug\" lie in one plane in view"));
+    else
+        CHECK(lines.empty());
+}
