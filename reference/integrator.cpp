@@ -48,7 +48,7 @@ class Scattering {
     bool black_ = false;
 };
 
-/// Radiance towards `toViewer` straight from the lights; share(light, toLight): of the diffuse reflection.
+/// Radiance towards `toViewer` straight from the lights; share(light, toLight): of each.
 template <class Share>
 Vec3 reflectedLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, const Share& share)
 {
@@ -61,7 +61,7 @@ Vec3 reflectedLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer
 
         const Vec3 diffuse = surface.albedo * (cosine / kPi), specular = evaluateSpecular(surface, sample.toLight, toViewer);
         if (diffuse + specular == Vec3(0.0f) || !tracer.lit(surface.position, surface.geometricNormal, sample)) continue;
-        sum += (share(k, sample.toLight) * diffuse + specular) * sample.irradiance;
+        sum += share(k, sample.toLight) * (diffuse + specular) * sample.irradiance;
     }
     return sum;
 }

@@ -76,7 +76,7 @@ class Pilot {
     {
         return overTiles([&](std::size_t tile, Tracer& tracer, Findings& found) {
             const TileGuide guide = guide_.guideFor(tile);
-            const LightPool pool = drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits);
+            const LightPool pool = drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits, transport_);
             PoolWeights weights;
             visitPixels(tile, [&](std::uint32_t pixel, const Surface& surface) {
                 const LightReceiver receiver = receiverAt(tracer, surface);
@@ -131,7 +131,10 @@ class Pilot {
         const std::optional<RayHit> hit = tracer.closestHit(ray);
         if (!hit || !reflects(tracer.scene(), *hit)) return std::nullopt;
         visitLights(tracer, ray, *hit, [&](std::size_t k, const Surface& surface, const LightSample& sample) {
-            const Vec3 radiance = diffuseRadiance(surface, sample);
+            // A glossy point counts as if it shone alike to all sides: to whom it does is not a matter of where it is.
+            Surface even = surface;
+            if (transport_ == Transport::full) even.albedo += surface.specularColor;
+            const Vec3 radiance = diffuseRadiance(even, sample);
             const std::optional<LightCoordinates> at = guide_.maps[k].coordinates(surface.position);
             if (at && radiance != Vec3(0.0f)) lit.push_back({{std::uint32_t(k), at->at}, radiance.x + radiance.y + radiance.z});
         });

@@ -13,15 +13,6 @@ constexpr int kDrawBits = 1;                // log2 of the pool's points that a 
 constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
-struct CosineResponse {
-    Vec3 normal;
-    Response operator()(const Vec3& direction) const
-    {
-        const float cosine = std::max(0.0f, glm::dot(normal, direction));
-        return {Vec3(cosine), cosine / kPi};
-    }
-};
-
 struct LobeResponse {
     const Surface& surface;
     Vec3 toEye;
@@ -59,7 +50,8 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     const std::uint32_t group = first >> groupBits_, count = 1u << (groupBits_ + kPointsASampleBits);
     const auto draw = [&](const TileGuide& guide, Purpose purpose) {
         if (guide.density.empty()) return LightPool{};
-        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count);
+        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count,
+                        settings_.transport);
     };
     pools.diffuse = draw(guide_, Purpose::diffusePoints);
     pools.furtherDiffuse = draw(tracer_.guide().further, Purpose::furtherDiffusePoints);

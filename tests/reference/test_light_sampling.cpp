@@ -184,12 +184,12 @@ TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[refe
     std::vector<float> weights(grids->texels());
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1.0f + float(i % 5);
     Tracer tracer(embree, lights);
-    const LightPool pool = drawPool(tracer, maps, {{grids, weights}, {}}, SobolBlock(philox({7, 0, 0, 1}, {2, 3}), 14), 0, 1u << 14);
+    const LightPool pool = drawPool(tracer, maps, {{grids, weights}, {}}, SobolBlock(philox({7, 0, 0, 1}, {2, 3}), 14), 0, 1u << 14, Transport::single);
     REQUIRE(pool.drawn == 1u << 14);
 
     double flux = 0.0;
     for (std::size_t i = 0; i < pool.size(); ++i)
-        if (pool.points[i].surface.mesh == 2) flux += double(pool.points[i].radiance.g) * 3.14159265358979 / 0.7 / double(pool.density[i]) / double(pool.drawn);
+        if (pool.points[i].hit.mesh == 2) flux += double(pool.points[i].radianceTowards(Vec3(0.0f)).g) * 3.14159265358979 / 0.7 / double(pool.density[i]) / double(pool.drawn);
     // Solid angle of the wall z = -1 from 1.3 m in front of it, as four right-angled corners atan(a b / (d sqrt(a^2 + b^2 + d^2))).
     double angle = 0.0;
     for (const double a : {0.8, 1.2})
@@ -232,12 +232,36 @@ TEST_CASE("from the lights' side, too: the same mean in every layer, and less no
 
 TEST_CASE("from the lights' side, too: the same mean with all bounces", "[reference][light-sampling]")
 {
-    const bool boxed = GENERATE(false, true);
-    const Scene scene = boxed ? lampInBox(true) : *makeBuiltinScene("cornell-box");
-    const Camera camera = boxed ? kIntoTheRoom : scene.cameras[0];
+    const int which = GENERATE(0, 1, 2);
+    const Scene scene = which == 0 ? lampInBox(true) : *makeBuiltinScene(which == 1 ? "cornell-box" : "cornell-glossy");
+    const Camera camera = which == 0 ? kIntoTheRoom : scene.cameras[0];
     const Sides sides = renderBoth(scene, camera, {.transport = Transport::full, .width = 32, .height = 24}, 512, 512);
     requireSameMean(sides.eye.irradiance, sides.eye.irradianceVariance, sides.both.irradiance, sides.both.irradianceVariance, sides.covered);
     CHECK(meanVariance(sides.both.irradianceVariance) < 0.6 * meanVariance(sides.eye.irradianceVariance));
+}
+
+TEST_CASE("the first block is like any other: no sample has helped to make the density that it is drawn by", "[reference][light-sampling]")
+{
+    // A small spot on the floor, which few rays of the pilot find; every pixel is one of the pilot's. One tile, one pool: each block gives one number a scene.
+    constexpr int scenes = 96, others = 4, bits = 8;
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < scenes; ++i) {
+        const float angle = 0.4f * float(i), reach = 0.2f + 0.005f * float(i);
+        const Scene scene = roomWith({}, {spotAt({0, 0.9f, 0}, {reach * std::cos(angle), -1, reach * std::sin(angle)}, 5.0f, 0.05f)});
+        const PathTracer tracer(scene, lookAt({0, 0.3f, 0.9f}, {0.2f, 0.6f, -1}, 1.2f), {.width = 4, .height = 4, .blockBits = bits});
+        const auto mean = [&](std::uint64_t first, std::uint64_t last) {
+            ReferenceState state = tracer.start({first << bits, last << bits});
+            tracer.advance(state, std::chrono::steady_clock::time_point::max());
+            double light = 0.0;
+            for (const Vec3& e : tracer.resolve(state.sums).irradiance.texels) light += double(e.g);
+            return light;
+        };
+        const double later = mean(1, 1 + others), difference = mean(0, 1) / later - 1.0;
+        sum += difference;
+        squares += difference * difference;
+    }
+    CAPTURE(sum / scenes, std::sqrt(squares) / scenes);
+    CHECK(std::abs(sum) < 5.0 * std::sqrt(squares));
 }
 
 TEST_CASE("the pilot is a function of scene, view and size: not of seed or threads", "[reference][light-sampling]")
