@@ -76,7 +76,8 @@ class Pilot {
     {
         return overTiles([&](std::size_t tile, Tracer& tracer, Findings& found) {
             const TileGuide guide = guide_.guideFor(tile);
-            const LightPool pool = drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits, transport_);
+            const LightPool pool =
+                drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits, transport_);
             PoolWeights weights;
             visitPixels(tile, [&](std::uint32_t pixel, const Surface& surface) {
                 const LightReceiver receiver = receiverAt(tracer, surface);

@@ -59,7 +59,9 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     const LightSample light = tracer.lights()[drawn.light](surface.position);
     const float cosine = glm::dot(surface.geometricNormal, light.toLight);
     const bool glossy = transport == Transport::full && surface.specularColor != Vec3(0.0f) && glm::dot(surface.normal, light.toLight) > 0.0f;
-    if (!(cosine > 0.0f) || light.irradiance == Vec3(0.0f) || (!glossy && diffuseRadiance(surface, light) == Vec3(0.0f)) || !(glm::dot(surface.normal, surface.geometricNormal) >= kLeastFacing)) return std::nullopt;
+    if (!(cosine > 0.0f) || light.irradiance == Vec3(0.0f) || (!glossy && diffuseRadiance(surface, light) == Vec3(0.0f)) ||
+        !(glm::dot(surface.normal, surface.geometricNormal) >= kLeastFacing))
+        return std::nullopt;
     if (!tracer.lit(surface.position, surface.geometricNormal, light)) return std::nullopt;
 
     // The density is that of the point, not of the draw, so that both techniques know the same.

@@ -59,7 +59,7 @@ class PoolWeights {
     /// The same for CosineResponse and every point.
     void weighDiffuse(const LightPool& pool, const LightReceiver& receiver, float candidates);
 
- private:
+  private:
     void sum(const LightPool& pool);
     std::vector<float> weights_;
     std::vector<double> sums_;
