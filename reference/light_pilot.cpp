@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kLargestSide = 32, kLeastSide = 4, kMostTexels = 4096;
 constexpr int kPixelsAcross = 4;               // of a tile, each way
-constexpr int kRayBits = 4, kMostRayBits = 8;  // log2 of the rays of a pixel
+constexpr int kRayBits = 6, kMostRayBits = 8;  // log2 of the rays of a pixel
 constexpr std::size_t kTilesForFewRays = 64;   // a small picture has more rays a pixel, so that the pilot still sees the scene
 constexpr double kEvenSpread = 0.05;           // of the variance over the squared mean
-constexpr int kPoolBits = 8;
+constexpr int kPoolBits = 10;
 constexpr std::uint32_t kMeanLight = 16, kMostLight = 1024;  // that a cosine ray counts, as bright as the mean and at the most
 constexpr float kUniformShare = 0.1f;                        // of `base`: rays that the pilot has not found, it may have missed
 constexpr std::array<std::uint32_t, 2> kPilotKey = {0x70696c6fu, 0x74000000u};

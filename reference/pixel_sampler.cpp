@@ -7,10 +7,10 @@ namespace lrsm {
 namespace {
 
 constexpr int kGroupBits = 6;
-constexpr int kPointsASampleBits = 4;       // log2 of a pool's points for each sample that a pixel draws from it
+constexpr int kPointsASampleBits = 5;       // log2 of a pool's points for each sample that a pixel draws from it
 constexpr std::size_t kSpecularStride = 4;  // weighing by a lobe costs as much as several by the cosine
 constexpr int kDrawBits = 1;                // log2 of the pool's points that a sample looks at
-constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
+constexpr float kPoolCandidates = 16.0f;    // c of the pools' technique
 constexpr float kFurtherCandidates = 8.0f;
 
 struct LobeResponse {
