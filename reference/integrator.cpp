@@ -78,7 +78,7 @@ Vec3 diffuseLight(Tracer& tracer, const PathStart& start, const RayHit& hit, con
     return radiance;
 }
 
-constexpr std::size_t kVertexCandidates = 8;  // at a further vertex: as many as cost less than the ray to the one that is taken
+constexpr std::size_t kVertexCandidates = 16;  // at a further vertex: as many as cost less than the ray to the one that is taken
 
 /// Technique b at a vertex of a path: (sum of f L) of light that one of a pool's points sends.
 Vec3 drawnLight(Tracer& tracer, const Surface& surface, const Scattering& scattering, const PathLight& light, const Philox4& words)
