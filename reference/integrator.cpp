@@ -48,7 +48,7 @@ class Scattering {
     bool black_ = false;
 };
 
-/// Radiance towards `toViewer` straight from the lights; share(light, toLight): of the diffuse reflection.
+/// Radiance towards `toViewer` straight from the lights; share(light, toLight): of each.
 template <class Share>
 Vec3 reflectedLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer, const Share& share)
 {
@@ -61,7 +61,7 @@ Vec3 reflectedLight(Tracer& tracer, const Surface& surface, const Vec3& toViewer
 
         const Vec3 diffuse = surface.albedo * (cosine / kPi), specular = evaluateSpecular(surface, sample.toLight, toViewer);
         if (diffuse + specular == Vec3(0.0f) || !tracer.lit(surface.position, surface.geometricNormal, sample)) continue;
-        sum += (share(k, sample.toLight) * diffuse + specular) * sample.irradiance;
+        sum += share(k, sample.toLight) * (diffuse + specular) * sample.irradiance;
     }
     return sum;
 }
@@ -78,7 +78,7 @@ Vec3 diffuseLight(Tracer& tracer, const PathStart& start, const RayHit& hit, con
     return radiance;
 }
 
-constexpr std::size_t kVertexCandidates = 8;  // at a further vertex: as many as cost less than the ray to the one that is taken
+constexpr std::size_t kVertexCandidates = 16;  // at a further vertex: as many as cost less than the ray to the one that is taken
 
 /// Technique b at a vertex of a path: (sum of f L) of light that one of a pool's points sends.
 Vec3 drawnLight(Tracer& tracer, const Surface& surface, const Scattering& scattering, const PathLight& light, const Philox4& words)

@@ -6,11 +6,6 @@
 /// Radiance along single paths: the part of the path tracer that knows physics and nothing of pictures.
 namespace lrsm {
 
-enum class Transport {
-    single,  ///< what LRSM sets out to compute: direct light and one bounce off diffuse secondary surfaces
-    full     ///< any number of bounces (Russian roulette), every BRDF at every vertex
-};
-
 /// Random words for the parts of a path that no Sobol dimension covers: the counter runs with the path.
 class PathRandom {
   public:

@@ -12,7 +12,6 @@
 namespace lrsm {
 
 struct PrimaryHits;
-enum class Transport;
 
 struct TexelCount {
     std::uint32_t texel = 0;

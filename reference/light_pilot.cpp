@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kLargestSide = 32, kLeastSide = 4, kMostTexels = 4096;
 constexpr int kPixelsAcross = 4;               // of a tile, each way
-constexpr int kRayBits = 4, kMostRayBits = 8;  // log2 of the rays of a pixel
+constexpr int kRayBits = 6, kMostRayBits = 8;  // log2 of the rays of a pixel
 constexpr std::size_t kTilesForFewRays = 64;   // a small picture has more rays a pixel, so that the pilot still sees the scene
 constexpr double kEvenSpread = 0.05;           // of the variance over the squared mean
-constexpr int kPoolBits = 8;
+constexpr int kPoolBits = 10;
 constexpr std::uint32_t kMeanLight = 16, kMostLight = 1024;  // that a cosine ray counts, as bright as the mean and at the most
 constexpr float kUniformShare = 0.1f;                        // of `base`: rays that the pilot has not found, it may have missed
 constexpr std::array<std::uint32_t, 2> kPilotKey = {0x70696c6fu, 0x74000000u};
@@ -76,7 +76,8 @@ class Pilot {
     {
         return overTiles([&](std::size_t tile, Tracer& tracer, Findings& found) {
             const TileGuide guide = guide_.guideFor(tile);
-            const LightPool pool = drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits);
+            const LightPool pool =
+                drawPool(tracer, guide_.maps, guide, points(std::uint32_t(tile), Purpose::pilotPoints, kPoolBits), 0, 1u << kPoolBits, transport_);
             PoolWeights weights;
             visitPixels(tile, [&](std::uint32_t pixel, const Surface& surface) {
                 const LightReceiver receiver = receiverAt(tracer, surface);
@@ -131,7 +132,10 @@ class Pilot {
         const std::optional<RayHit> hit = tracer.closestHit(ray);
         if (!hit || !reflects(tracer.scene(), *hit)) return std::nullopt;
         visitLights(tracer, ray, *hit, [&](std::size_t k, const Surface& surface, const LightSample& sample) {
-            const Vec3 radiance = diffuseRadiance(surface, sample);
+            // A glossy point counts as if it shone alike to all sides: to whom it does is not a matter of where it is.
+            Surface even = surface;
+            if (transport_ == Transport::full) even.albedo += surface.specularColor;
+            const Vec3 radiance = diffuseRadiance(even, sample);
             const std::optional<LightCoordinates> at = guide_.maps[k].coordinates(surface.position);
             if (at && radiance != Vec3(0.0f)) lit.push_back({{std::uint32_t(k), at->at}, radiance.x + radiance.y + radiance.z});
         });

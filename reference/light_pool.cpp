@@ -22,8 +22,7 @@ void reserve(LightPool& pool, std::size_t count)
 /// A lit point on its way into the pool.
 struct Found {
     std::uint64_t order = 0;  ///< along the lights' squares, see hilbertIndex
-    Surface surface;
-    float density = 0.0f, reach = 1.0f;
+    float density = 0.0f;
     LightPool::Point point;
 };
 
@@ -48,7 +47,7 @@ std::uint32_t hilbertIndex(UnitPoint at)
 }
 
 /// What one ray of a light strikes, lit as technique a finds it.
-std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const LightPoint& drawn)
+std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const LightPoint& drawn, Transport transport)
 {
     const LightMap& map = maps[drawn.light];
     const std::optional<Ray> ray = map.ray(drawn.at, tracer.lightOffset(drawn.light));
@@ -59,8 +58,10 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     const Surface surface = evaluateSurface(tracer.scene(), hit->surface, -ray->direction);
     const LightSample light = tracer.lights()[drawn.light](surface.position);
     const float cosine = glm::dot(surface.geometricNormal, light.toLight);
-    const Vec3 radiance = diffuseRadiance(surface, light);
-    if (!(cosine > 0.0f) || radiance == Vec3(0.0f) || !(glm::dot(surface.normal, surface.geometricNormal) >= kLeastFacing)) return std::nullopt;
+    const bool glossy = transport == Transport::full && surface.specularColor != Vec3(0.0f) && glm::dot(surface.normal, light.toLight) > 0.0f;
+    if (!(cosine > 0.0f) || light.irradiance == Vec3(0.0f) || (!glossy && diffuseRadiance(surface, light) == Vec3(0.0f)) ||
+        !(glm::dot(surface.normal, surface.geometricNormal) >= kLeastFacing))
+        return std::nullopt;
     if (!tracer.lit(surface.position, surface.geometricNormal, light)) return std::nullopt;
 
     // The density is that of the point, not of the draw, so that both techniques know the same.
@@ -70,7 +71,7 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     const auto perArea = float(double(guide.density(point)) * at->perArea * double(cosine));
     if (!(perArea > 0.0f) || !std::isfinite(perArea)) return std::nullopt;
     const float reach = guide.reach.empty() ? 1.0f : guide.reach[guide.density.grids().texelOf(point)];
-    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at), surface, perArea, reach, {hit->surface, radiance, drawn.light}};
+    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at), perArea, {hit->surface, surface, light, drawn.light, reach, glossy}};
 }
 
 }  // namespace
@@ -80,24 +81,29 @@ bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toVi
     return glm::dot(normal, toViewer) >= kLeastFacing && glm::dot(normal, geometricNormal) >= kLeastFacing;
 }
 
-LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count)
+LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count,
+                   Transport transport)
 {
     std::vector<Found> found;
     found.reserve(count);
     for (std::uint32_t i = first; i < first + count; ++i)
-        if (std::optional<Found> one = follow(tracer, maps, guide, guide.density.draw(points.point(i)))) found.push_back(*one);
+        if (std::optional<Found> one = follow(tracer, maps, guide, guide.density.draw(points.point(i)), transport)) found.push_back(*one);
     // Neighbours side by side: draws that are stratified along the pool are stratified over what is lit.
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.order < b.order; });
 
     LightPool pool;
     pool.drawn = count;
+    pool.transport = transport;
     reserve(pool, found.size());
     for (const Found& one : found) {
-        append(pool.x, pool.y, pool.z, one.surface.position);
-        append(pool.gx, pool.gy, pool.gz, one.surface.geometricNormal);
-        append(pool.nx, pool.ny, pool.nz, one.surface.normal);
+        const LightPool::Point& point = one.point;
+        append(pool.x, pool.y, pool.z, point.surface.position);
+        append(pool.gx, pool.gy, pool.gz, point.surface.geometricNormal);
+        append(pool.nx, pool.ny, pool.nz, point.surface.normal);
         pool.density.push_back(one.density);
-        pool.brightness.push_back(one.reach * (one.point.radiance.x + one.point.radiance.y + one.point.radiance.z));
+        const Vec3 diffuse = diffuseRadiance(point.surface, point.sample);
+        pool.brightness.push_back(point.reach * (diffuse.x + diffuse.y + diffuse.z));
+        if (point.glossy) pool.glossy.push_back(std::uint32_t(pool.points.size()));
         pool.points.push_back(one.point);
     }
     return pool;

@@ -38,13 +38,23 @@ struct LightPool {
     std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
     std::vector<float> nx, ny, nz;  ///< unit shading normal
     std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
-    std::vector<float> brightness;  ///< sum of the radiance's channels, times how likely the point is to be seen
+    std::vector<float> brightness;  ///< sum of the diffuse radiance's channels, times `reach`
     struct Point {
-        SurfaceHit surface;
-        Vec3 radiance{0.0f};  ///< diffuse, W/(m^2 sr)
+        SurfaceHit hit;
+        Surface surface;
+        LightSample sample;  ///< of the light
         std::uint32_t light = 0;
+        float reach = 1.0f;   ///< how likely the point is to be seen
+        bool glossy = false;  ///< its specular reflection counts, too
+        Vec3 radianceTowards(const Vec3& toViewer) const
+        {
+            const Vec3 diffuse = diffuseRadiance(surface, sample);
+            return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse;
+        }
     };
     std::vector<Point> points;
+    std::vector<std::uint32_t> glossy;  ///< which points are
+    Transport transport = Transport::single;
 
     std::size_t size() const { return points.size(); }
     Vec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -52,7 +62,8 @@ struct LightPool {
 };
 
 /// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.
-LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count);
+LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count,
+                   Transport transport);
 
 /// A shading normal turned away from who looks, or from its own triangle, depends on who looks (evaluateSurface): technique b leaves such points to a.
 bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toViewer);

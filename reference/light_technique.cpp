@@ -40,6 +40,7 @@ void PoolWeights::weighDiffuse(const LightPool& pool, const LightReceiver& recei
                           (shading * shading >= kLeastFacing * kLeastFacing * distance2) & (weight > 0.0f);
         weights_[j] = seen ? weight : 0.0f;
     }
+    for (const std::uint32_t j : pool.glossy) weights_[j] = poolWeight(pool, j, receiver, candidates, CosineResponse{receiver.normal});
     sum(pool);
 }
 
@@ -67,13 +68,14 @@ Vec3 radianceFrom(Tracer& tracer, const LightPool& pool, std::size_t j, const Li
     const Ray ray{receiver.origin, direction, 0.0f, distance + offset / leaving, RayKind::bounce};
     const std::optional<RayHit> hit = tracer.closestHit(ray);
     if (!hit) return Vec3(0.0f);
-    if (hit->surface.mesh == point.surface.mesh && hit->surface.triangle == point.surface.triangle) return point.radiance;
+    if (hit->surface.mesh == point.hit.mesh && hit->surface.triangle == point.hit.triangle) return point.radianceTowards(-direction);
 
     // Of triangles that lie in each other, the one that technique a would have found counts.
     if ((distance - hit->t) * leaving > offset || !reflects(tracer.scene(), *hit)) return Vec3(0.0f);
     const Surface surface = evaluateSurface(tracer.scene(), hit->surface, -direction);
     const LightSample light = tracer.lights()[point.light](surface.position);
-    return glm::dot(surface.geometricNormal, light.toLight) > 0.0f ? diffuseRadiance(surface, light) : Vec3(0.0f);
+    if (!(glm::dot(surface.geometricNormal, light.toLight) > 0.0f)) return Vec3(0.0f);
+    return diffuseRadiance(surface, light) + (pool.transport == Transport::full ? specularRadiance(surface, light, -direction) : Vec3(0.0f));
 }
 
 }  // namespace lrsm

@@ -11,6 +11,15 @@ struct Response {
     float density = 0.0f;  ///< p_a(w), 1/sr
 };
 
+struct CosineResponse {
+    Vec3 normal;
+    Response operator()(const Vec3& direction) const
+    {
+        const float cosine = std::max(0.0f, glm::dot(normal, direction));
+        return {Vec3(cosine), cosine / kPi};
+    }
+};
+
 /// Where light is received. Technique a's rays start at `origin`, so that is where b's densities are taken.
 struct LightReceiver {
     Vec3 origin{0.0f};  ///< lifted off the surface, as rayFrom does
@@ -44,11 +53,11 @@ class PoolWeights {
     /// \param u  in [0, 1)
     Choice choose(float u) const;
 
-    /// w = brightness c <n.w> / (p_a + c p_b), p_a = <n.w> / pi.
-    void weighDiffuse(const LightPool& pool, const LightReceiver& receiver, float candidates);
-    /// w = brightness (sum of f's channels) c / (p_a + c p_b) for every `stride`-th point from `first` on.
+    /// w = (sum of L's channels) reach (sum of f's channels) c / (p_a + c p_b) for every `stride`-th point from `first` on.
     template <class Respond>
     void weigh(const LightPool& pool, const LightReceiver& receiver, float candidates, const Respond& respond, std::size_t first = 0, std::size_t stride = 1);
+    /// The same for CosineResponse and every point.
+    void weighDiffuse(const LightPool& pool, const LightReceiver& receiver, float candidates);
 
   private:
     void sum(const LightPool& pool);
@@ -74,17 +83,25 @@ Vec3 connection(const LightPool& pool, std::size_t j, const LightReceiver& recei
     return both > 0.0f ? response.value * (candidates * leaving / both) : Vec3(0.0f);
 }
 
+/// Of point j in PoolWeights.
+template <class Respond>
+float poolWeight(const LightPool& pool, std::size_t j, const LightReceiver& receiver, float candidates, const Respond& respond)
+{
+    Vec3 direction;
+    const Vec3 value = connection(pool, j, receiver, candidates, respond, direction);
+    const float sum = value.x + value.y + value.z;
+    if (!(sum > 0.0f) || !pool.points[j].glossy) return pool.brightness[j] * sum;
+    const Vec3 specular = specularRadiance(pool.points[j].surface, pool.points[j].sample, -direction);
+    return (pool.brightness[j] + pool.points[j].reach * (specular.x + specular.y + specular.z)) * sum;
+}
+
 template <class Respond>
 void PoolWeights::weigh(const LightPool& pool, const LightReceiver& receiver, float candidates, const Respond& respond, std::size_t first, std::size_t stride)
 {
     first_ = first;
     stride_ = stride;
     weights_.clear();
-    Vec3 direction;
-    for (std::size_t j = first; j < pool.size(); j += stride) {
-        const Vec3 value = connection(pool, j, receiver, candidates, respond, direction);
-        weights_.push_back(pool.brightness[j] * (value.x + value.y + value.z));
-    }
+    for (std::size_t j = first; j < pool.size(); j += stride) weights_.push_back(poolWeight(pool, j, receiver, candidates, respond));
     sum(pool);
 }
 

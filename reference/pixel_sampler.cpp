@@ -7,20 +7,12 @@ namespace lrsm {
 namespace {
 
 constexpr int kGroupBits = 6;
-constexpr int kPointsASampleBits = 4;       // log2 of a pool's points for each sample that a pixel draws from it
+constexpr int kPointsASampleBits = 5;       // log2 of a pool's points for each sample that a pixel draws from it
 constexpr std::size_t kSpecularStride = 4;  // weighing by a lobe costs as much as several by the cosine
 constexpr int kDrawBits = 1;                // log2 of the pool's points that a sample looks at
-constexpr float kPoolCandidates = 8.0f;     // c of the pools' technique
-constexpr float kFurtherCandidates = 8.0f;
-
-struct CosineResponse {
-    Vec3 normal;
-    Response operator()(const Vec3& direction) const
-    {
-        const float cosine = std::max(0.0f, glm::dot(normal, direction));
-        return {Vec3(cosine), cosine / kPi};
-    }
-};
+constexpr float kPoolCandidates = 16.0f;    // c of the pools' technique
+constexpr int kFurtherPointsBits = 4;       // the same of further vertices' pools
+constexpr float kFurtherCandidates = 16.0f;
 
 struct LobeResponse {
     const Surface& surface;
@@ -56,16 +48,17 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
 {
     GroupPools pools;
     const RayCounts before = tracer.counts;
-    const std::uint32_t group = first >> groupBits_, count = 1u << (groupBits_ + kPointsASampleBits);
-    const auto draw = [&](const TileGuide& guide, Purpose purpose) {
+    const std::uint32_t group = first >> groupBits_;
+    const auto draw = [&](const TileGuide& guide, Purpose purpose, int bits) {
         if (guide.density.empty()) return LightPool{};
-        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, kPointsASampleBits), group * count, count);
+        const std::uint32_t count = 1u << (groupBits_ + bits);
+        return drawPool(tracer, tracer_.guide().maps, guide, key_.points(std::uint32_t(tile_), purpose, bits), group * count, count, settings_.transport);
     };
-    pools.diffuse = draw(guide_, Purpose::diffusePoints);
-    pools.furtherDiffuse = draw(tracer_.guide().further, Purpose::furtherDiffusePoints);
+    pools.diffuse = draw(guide_, Purpose::diffusePoints, kPointsASampleBits);
+    pools.furtherDiffuse = draw(tracer_.guide().further, Purpose::furtherDiffusePoints, kFurtherPointsBits);
     // Their own for the lobe, so that the variances of both parts add up.
-    if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints);
-    if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints);
+    if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints, kPointsASampleBits);
+    if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints, kFurtherPointsBits);
     if (first != group << groupBits_) tracer.counts = before;
     return pools;
 }

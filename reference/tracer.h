@@ -9,6 +9,11 @@
 /// Rays of the path tracer, and the light that a surface reflects straight from the lights.
 namespace lrsm {
 
+enum class Transport {
+    single,  ///< what LRSM sets out to compute: direct light and one bounce off diffuse secondary surfaces
+    full     ///< any number of bounces (Russian roulette), every BRDF at every vertex
+};
+
 /// Rays of each kind, for the ray budget.
 struct RayCounts {
     std::uint64_t eye = 0;  ///< from the camera, and from the lights
@@ -85,6 +90,12 @@ inline bool reflects(const Scene& scene, const RayHit& hit)
 inline Vec3 diffuseRadiance(const Surface& surface, const LightSample& light)
 {
     return surface.albedo / kPi * std::max(0.0f, glm::dot(surface.normal, light.toLight)) * light.irradiance;
+}
+
+/// The same of the specular reflection towards `toViewer`.
+inline Vec3 specularRadiance(const Surface& surface, const LightSample& light, const Vec3& toViewer)
+{
+    return surface.specularColor == Vec3(0.0f) ? Vec3(0.0f) : evaluateSpecular(surface, light.toLight, toViewer) * light.irradiance;
 }
 
 }  // namespace lrsm
