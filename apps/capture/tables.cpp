@@ -10,7 +10,7 @@ namespace lrsm {
 namespace {
 
 constexpr int kPattern = 4;  ///< edge of the square of pixels over which directions alternate
-constexpr std::size_t kStepColumns = 8;
+constexpr std::size_t kStepColumns = 10;
 
 template <class T>
 Table tableOf(std::string name, Dtype dtype, std::vector<std::size_t> shape, const std::vector<T>& values)
@@ -41,7 +41,8 @@ void addSchedules(CaptureTables& tables)
         counts.push_back(static_cast<std::uint32_t>(all[s]->steps.size()));
         float* row = values.data() + s * longest * kStepColumns;
         for (const MarchStep& step : all[s]->steps)
-            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f, step.settled})
+            for (const float value : {step.middle, step.begin, step.end, step.diameter, step.level, step.tapWidth, step.readVoxels ? 1.0f : 0.0f, step.settled,
+                                      static_cast<float>(step.taps), static_cast<float>(step.firstTap)})
                 *row++ = value;
     }
     tables.schedules = tableOf("tables.schedules", Dtype::f4, {all.size(), longest, kStepColumns}, values);
@@ -74,7 +75,7 @@ void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
     };
     rows(tables.directions, {"rotation", "cone"}, {"x", "y", "z"}, {"axes of the diffuse cones, unit", "tangent frame, z along the normal", ""});
     rows(tables.rotation, {"row", "column"}, {}, {"rotation of the pixel at (row & 3, column & 3)", "", ""});
-    rows(tables.schedules, {"schedule", "step"}, {"middle", "begin", "end", "diameter", "level", "tap_width", "reads_voxels", "settled"},
+    rows(tables.schedules, {"schedule", "step"}, {"middle", "begin", "end", "diameter", "level", "tap_width", "reads_voxels", "settled", "taps", "first_tap"},
          {"where a cone takes its samples; rows of 0 after the last step", "along the cone from its apex", "base voxels"});
     rows(tables.steps, {"schedule"}, {}, {"steps of each schedule", "", ""});
     rows(tables.gaussian, {"entry"}, {}, {"Phi over [-5, 5], linear between entries", "", ""});

@@ -47,8 +47,8 @@ inline Counters countersOf(const ConeCounts& counts)
             {"lrsm_samples", static_cast<double>(counts.lrsmSamples)}};
 }
 
-/// Widths of its voxel that a quadrilinear tap reaches through: a trilinear kernel is two voxels wide, blended with that of the level above.
-inline constexpr float kKernelReachTaps = 3.0f;
+/// Widths of its voxel that a trilinear lookup reaches from its centre: a tent of one width, of voxels that are themselves one wide.
+inline constexpr float kKernelReachTaps = 1.5f;
 
 /// Transmittance from optical depth F: linear (a wall covers each ray once) or exponential (randomly placed surfaces). Error <= kTransmittanceMaxError.
 inline constexpr float kTransmittanceMaxError = 4e-7f;

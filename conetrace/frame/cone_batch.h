@@ -43,8 +43,11 @@ struct ConeBatchResult {
 /// What a march keeps of its cones from step to step, by cone, and its lists of those that a stage has left over. A stage writes a list, the next one
 /// reads it: whatever share of the cones survives, all lanes are busy.
 struct MarchBatchScratch {
-    std::vector<float> opticalDepth;  ///< [step * kBatchCones + cone], at each segment's end
-    alignas(64) float exit[kBatchRoom], depth[kBatchRoom], density[kBatchRoom];
+    std::vector<float> opticalDepth;      ///< F by axis (isotropic: one value): [(row * channels + axis) * kBatchCones + cone]
+    std::vector<std::int32_t> rowOfEdge;  ///< row that holds F at an edge of the schedule's taps
+    int channels = 3;                     ///< 1 or 3
+    float* depthAt(int edge, int axis) { return opticalDepth.data() + std::size_t(rowOfEdge[std::size_t(edge)] * channels + axis) * kBatchCones; }
+    alignas(64) float exit[kBatchRoom];
     alignas(64) std::int32_t octant[kBatchRoom], alive[kBatchRoom], occupied[kBatchRoom], wasOccupied[kBatchRoom];
     // Cones whose tap may meet a voxel: their sample's place, in voxels.
     alignas(64) std::int32_t lookup[kBatchRoom];

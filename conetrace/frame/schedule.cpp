@@ -4,19 +4,38 @@
 #include "core/base/errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace lrsm {
 namespace {
 
+/// The sphere of `paper` at t, and of `slab` within the receiver's own voxels.
 MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
 {
     MarchStep step;
-    step.middle = t;
+    step.middle = step.begin = t;
     step.diameter = std::max(settings.march.minDiameterVoxels, 2.0f * t * tanHalf);
+    step.end = t + settings.march.step * step.diameter;
     const double level = std::max(0.0, log2Exact(double(step.diameter)) + double(settings.march.voxelLevelBias));
     step.level = static_cast<float>(level);
     step.tapWidth = static_cast<float>(exp2Exact(level));
+    return step;
+}
+
+/// The segment of `slab` that begins at t.
+MarchStep segmentAt(const ConeSettings& settings, float tanHalf, float t)
+{
+    const float diameter = std::max(settings.march.minDiameterVoxels, 2.0f * t * tanHalf);
+    const double level = std::max(0.0, std::floor(log2Exact(double(diameter)) + double(settings.march.voxelLevelBias)));
+    MarchStep step;
+    step.level = static_cast<float>(level);
+    step.tapWidth = static_cast<float>(exp2Exact(level));
+    step.taps = std::max(1, static_cast<int>(settings.march.step * diameter / step.tapWidth + 0.5f));
+    step.begin = t;
+    step.end = t + step.tapWidth * static_cast<float>(step.taps);
+    step.middle = 0.5f * (t + step.end);
+    step.diameter = std::max(settings.march.minDiameterVoxels, 2.0f * step.middle * tanHalf);
     return step;
 }
 
@@ -33,12 +52,22 @@ MarchStep stepAt(const ConeSettings& settings, float tanHalf, float t)
 /// From the last segment back: the least distance that any segment after it looks back to.
 void settle(MarchSchedule& schedule, const LrsmGatherSettings& settings)
 {
-    if (schedule.steps.empty()) return;
-    float settled = schedule.steps.back().end;
+    float settled = kInfinity;
     for (auto step = schedule.steps.rbegin(); step != schedule.steps.rend(); ++step) {
-        step->settled = settled;
         const float farthestDelay = (settings.emitterDelayTaps * step->tapWidth + settings.emitterDelayVoxels) / settings.emitterSlantCap;
-        settled = std::min(settled, step->middle - farthestDelay);
+        settled = std::min(settled, step->begin - kCrossingSlackTaps * step->tapWidth - farthestDelay);
+        step->settled = settled;
+    }
+}
+
+/// Numbers the taps along the cone and says where each begins.
+void layTaps(MarchSchedule& schedule)
+{
+    schedule.edges.push_back(schedule.steps.empty() ? 0.0f : schedule.steps.front().begin);
+    for (MarchStep& step : schedule.steps) {
+        step.firstTap = static_cast<int>(schedule.edges.size()) - 1;
+        for (int k = 1; k < step.taps; ++k) schedule.edges.push_back(step.begin + step.tapWidth * static_cast<float>(k));
+        schedule.edges.push_back(step.end);
     }
 }
 
@@ -53,21 +82,22 @@ MarchSchedule makeSchedule(const ConeSettings& settings, float tanHalf, float re
     float t = settings.march.startVoxels;
     if (slab && t > 0.0f) {
         MarchStep first = stepAt(settings, tanHalf, 0.5f * t);
+        first.begin = 0.0f;
         first.end = t;
         first.readVoxels = false;
         schedule.steps.push_back(first);
     }
     while (t < reachVoxels && static_cast<int>(schedule.steps.size()) < settings.march.maxSteps) {
-        // The diameter at the segment's start gives its length: a segment grows with the cone.
-        const float length = settings.march.step * std::max(settings.march.minDiameterVoxels, 2.0f * t * tanHalf);
-        MarchStep step = stepAt(settings, tanHalf, slab ? t + 0.5f * length : t);
-        step.begin = t;
-        step.end = t + length;
+        if (!(settings.march.step > 0.0f && settings.march.step < kInfinity)) refuseStep(settings, t);
+        MarchStep step = slab ? segmentAt(settings, tanHalf, t) : stepAt(settings, tanHalf, t);
         if (!(step.end > t)) refuseStep(settings, t);
         schedule.steps.push_back(step);
         t = step.end;
     }
-    settle(schedule, settings.gather);
+    if (slab) {
+        settle(schedule, settings.gather);
+        layTaps(schedule);
+    }
     return schedule;
 }
 

@@ -60,7 +60,6 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
     const GenericSampler sampler{world.opacity, world.settings.march.filterFraction};
     const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
     MarchScratch scratch;
-    scratch.opticalDepth.resize(plan.longestSchedule);
     ConeCounts counts;
     TextRecorder recorder;
 

@@ -55,7 +55,6 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
-    scratch.opticalDepth.resize(plan.longestSchedule);
     const int xEnd = std::min(gbuffer.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer.height, (tileY + 1) * kTile);
     for (int y = tileY * kTile; y < yEnd; ++y) {
         for (int x = tileX * kTile; x < xEnd; ++x) {

@@ -37,7 +37,7 @@ struct GenericSampler {
 
 /// Working memory of one thread's cones, sized once for the longest schedule.
 struct MarchScratch {
-    std::vector<float> opticalDepth;  ///< at each segment's end
+    std::vector<Vec3> opticalDepth;  ///< F at each edge of the schedule's taps, by the axis along which it was covered; isotropic: x alone
 };
 
 /// What --pixel shows of one step.
@@ -69,10 +69,19 @@ concept RecordsLookups = Recorder::active && requires(Recorder& recorder, const 
     recorder.lookup(sample);
 };
 
-/// Area density, per base voxel of length, that a cone along `direction` meets.
+inline float sumOf(const Vec3& v)
+{
+    return v.x + v.y + v.z;
+}
+
+/// Area density, per base voxel of length, that a cone along `direction` meets: by axis, and their sum.
+inline Vec3 coveredAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
+{
+    return pyramid.axes == OpacityAxes::directional ? glm::abs(direction) * sample : Vec3(sample.x, 0.0f, 0.0f);
+}
 inline float densityAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
 {
-    return pyramid.axes == OpacityAxes::directional ? glm::dot(glm::abs(direction), sample) : sample.x;
+    return sumOf(coveredAlong(pyramid, sample, direction));
 }
 
 }  // namespace lrsm

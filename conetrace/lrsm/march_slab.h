@@ -14,7 +14,16 @@
 ///
 /// one term for both V and N. The w of consecutive segments telescope: while s is constant, an infinite wall gives exactly L for any step or angle
 /// (docs/pipeline.md says how near the rest comes).
-/// Opacity is area density: a wall covers each ray once, coverage adds, and T = max(0, 1 - integral of density).
+/// Opacity is area density: a wall covers each ray once, coverage adds, and T = max(0, 1 - F), F the integral of density.
+///
+/// The emitter's own voxels must not dim it. Its tangent plane (unit normal n, c = <n.v>) is crossed at t* = middle - e0 / g, and of what was covered in
+/// front of it, F(t* - front), one crossing of that plane is taken back where it lies within `delay` of t*. F is kept by axis, F_a, since the voxels are
+/// (|d_a| times the fraction of columns along a that hold one), and so is the crossing: a wall across another axis is never the emitter's own.
+///
+///     own_a = |d_a| (|n_a| + edge) / c
+///     T     = max(0, 1 - sum_a [ F_a(t* - front) - min(F_a(t* - front) - F_a(t* - delay), own_a) ])
+///
+/// `edge`, one over the voxels along a block's edge, is what a layer one voxel thick shows of its rim.
 namespace lrsm {
 
 /// Rates are capped where light grazes the surface: g = <n.v> / <n.l>.
@@ -22,18 +31,45 @@ inline constexpr float kLeastLightCosine = 1e-3f;
 /// Beyond as many sigmas a layer has nothing in a segment.
 inline constexpr float kNegligibleSigmas = 6.0f;
 
-/// F at distance t, by linear interpolation in the segments done so far (`last` is the current one).
-inline float opticalDepthAt(const MarchSchedule& schedule, const std::vector<float>& opticalDepth, std::size_t last, float t)
+/// Width of a sample's footprint in the LRSM over the cone's diameter there, and the least in voxels. Wider than the kernel of T, and floors lose light to the
+/// foot of the wall that they meet; narrower, and the cones of a set leave gaps: chosen with kFrontTaps (docs/pipeline.md).
+inline constexpr float kFootprintShare = 0.13f, kLeastFootprintVoxels = 0.5f;
+/// F is taken as many taps in front of the crossing: the near half of a tap's kernel.
+inline constexpr float kFrontTaps = 1.5f;
+/// A block's columns are no longer than 2^3 voxels (voxel/opacity_pyramid.h).
+inline constexpr float kLongestColumnVoxels = 8.0f;
+/// The way through the emitter's own layer is not taken to be longer than for this cosine.
+inline constexpr float kLeastEmitterCosine = 0.05f;
+
+/// Width of the LRSM's footprint, in voxels: that of sigma, too.
+inline float footprintVoxels(const MarchStep& step)
 {
-    std::size_t i = last;
-    while (i > 0 && schedule.steps[i].begin > t) --i;
-    const MarchStep& segment = schedule.steps[i];
-    const float before = i > 0 ? opticalDepth[i - 1] : 0.0f;
-    const float fraction = std::clamp((t - segment.begin) / (segment.end - segment.begin), 0.0f, 1.0f);
-    return before + (opticalDepth[i] - before) * fraction;
+    return std::max(kLeastFootprintVoxels, kFootprintShare * step.diameter);
 }
 
-/// Emission of one light's layers within one segment, weighted by the transmittance just before the emitter's own voxels.
+/// F at distance t, linear over the taps done so far (`done`).
+inline Vec3 opticalDepthAt(const std::vector<float>& edges, const std::vector<Vec3>& opticalDepth, int done, float t)
+{
+    std::size_t i = std::size_t(done);
+    while (i > 1 && edges[i - 1] > t) --i;
+    const float fraction = std::clamp((t - edges[i - 1]) / (edges[i] - edges[i - 1]), 0.0f, 1.0f);
+    return opticalDepth[i - 1] + (opticalDepth[i] - opticalDepth[i - 1]) * fraction;
+}
+
+/// What is covered in front of an emitter of unit normal n that the cone crosses at `crossing`, its own voxels taken back.
+inline float depthInFront(const MarchSchedule& schedule, const MarchStep& step, const MarchScratch& scratch, OpacityAxes axes, const Vec3& direction,
+                          const Vec3& normal, float cosine, float crossing, float delay)
+{
+    const int done = step.firstTap + step.taps;
+    const Vec3 now = opticalDepthAt(schedule.edges, scratch.opticalDepth, done, crossing - kFrontTaps * step.tapWidth);
+    const Vec3 before = opticalDepthAt(schedule.edges, scratch.opticalDepth, done, crossing - delay);
+    const float edge = 1.0f / std::min(step.tapWidth, kLongestColumnVoxels), c = std::max(cosine, kLeastEmitterCosine);
+    Vec3 own = (glm::abs(normal) + edge) / c;
+    own = axes == OpacityAxes::directional ? glm::abs(direction) * own : Vec3(sumOf(own), 0.0f, 0.0f);
+    return sumOf(now - glm::min(glm::max(now - before, Vec3(0.0f)), own));
+}
+
+/// Emission of one light's layers within one segment, weighted by the transmittance in front of the emitter.
 template <class Recorder>
 Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const Vec3& pWorld, const MarchSchedule& schedule, std::size_t index,
                   const MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
@@ -46,9 +82,9 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
 
     const MarchStep& step = schedule.steps[index];
     const float voxelSize = world.opacity.base.grid.voxelSize;
-    const float tap = step.tapWidth * voxelSize, segment = (step.end - step.begin) * voxelSize;
+    const float tap = footprintVoxels(step) * voxelSize, segment = (step.end - step.begin) * voxelSize;
     const float range = lrsm.projection.depthRange(), zc = at.depth * range;  // metres beyond depthNear
-    const float window = (0.5f * segment + 0.5f * kKernelReachTaps * tap) / range;
+    const float window = (0.5f * segment + kKernelReachTaps * tap) / range;
     const Vec3 toLight = directionToLight(lrsm.projection, pWorld);
 
     Vec3 emission(0.0f);
@@ -76,7 +112,7 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         if (!(nDotV > 0.0f)) continue;
         const float rate = nDotV / std::max(glm::dot(normal, toLight), kLeastLightCosine);
 
-        // The layer's depths (Eq. 10, 11), in metres, blurred by the tap's own width.
+        // The layer's depths (Eq. 10, 11), in metres, blurred by the footprint's own width.
         const float warpedMean = depth[0] / depth[2];
         const float warpedVariance = std::max(0.0f, depth[1] / depth[2] - warpedMean * warpedMean);
         const float scale = (bounds.depthMax - bounds.depthMin) * range;
@@ -86,10 +122,13 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         if (std::abs(e0) - h > kNegligibleSigmas * sigma) continue;
         const float weight = world.phi((e0 + h) / sigma) - world.phi((e0 - h) / sigma);
 
-        // The emitter's own voxels must not dim it: transmittance is taken in front of them.
-        const float slant = std::max(nDotV / glm::length(normal), settings.gather.emitterSlantCap);
-        const float delay = (settings.gather.emitterDelayTaps * step.tapWidth + settings.gather.emitterDelayVoxels) / slant;
-        const float transmittance = transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, index, step.middle - delay), settings);
+        // Where its tangent plane is crossed, and what stands in front of that.
+        const float length = glm::length(normal), cosine = nDotV / length, slack = kCrossingSlackTaps * step.tapWidth;
+        const float crossing = std::clamp(step.middle - e0 / (rate * voxelSize), step.begin - slack, step.end + slack);
+        const float delay =
+            (settings.gather.emitterDelayTaps * step.tapWidth + settings.gather.emitterDelayVoxels) / std::max(cosine, settings.gather.emitterSlantCap);
+        const float front = depthInFront(schedule, step, scratch, world.opacity.axes, ray.direction, normal / length, cosine, crossing, delay);
+        const float transmittance = transmittanceOf(front, settings);
         if (!(transmittance > 0.0f)) continue;
 
         const Float4 radianceSum = sampleRadiance(texels, *footprint);
@@ -103,8 +142,8 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
 }
 
 /// Error of a cone against the same integral in double: of its opacity, and of its radiance over the largest that the map holds. Eq. 11 subtracts two
-/// floats: with a layer 80 taps deep instead of fitted to its texels, what that leaves of sigma^2 is seen (the second).
-inline constexpr float kMarchSlabMaxError = 3e-5f, kMarchSlabWideMaxError = 8e-4f;
+/// floats: with a layer 160 footprints deep instead of fitted to its texels, what that leaves of sigma^2 is seen (the second).
+inline constexpr float kMarchSlabMaxError = 5e-5f, kMarchSlabWideMaxError = 2e-3f;
 
 template <class Sampler, class Recorder>
 ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeRay& ray, const MarchSchedule& schedule, MarchScratch& scratch,
@@ -115,7 +154,9 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
     const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
 
     ConeResult result;
-    float depth = 0.0f;       // F at the current segment's end
+    Vec3 depth(0.0f);         // F so far
+    scratch.opticalDepth.resize(schedule.edges.size());
+    if (!scratch.opticalDepth.empty()) scratch.opticalDepth[0] = depth;
     bool wasOccupied = true;  // the first segments may touch what the receiver stands on
     ++counts.cones;
     for (std::size_t i = 0; i < schedule.steps.size(); ++i) {
@@ -124,21 +165,25 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         ++counts.steps;
         const Vec3 offset = ray.direction * step.middle;
 
-        float density = 0.0f;
-        bool occupied = true;
-        if (step.readVoxels) {
-            ++counts.voxelTaps;
-            const Vec3 tap = sampler(ray.originVoxels + offset, step.level);
-            density = densityAlong(world.opacity, tap, ray.direction);
-            occupied = tap.x + tap.y + tap.z > 0.0f;
+        const float before = sumOf(depth);
+        bool occupied = !step.readVoxels;
+        for (int k = step.firstTap; k < step.firstTap + step.taps; ++k) {
+            if (step.readVoxels) {
+                ++counts.voxelTaps;
+                const Vec3 tap = sampler(ray.originVoxels + ray.direction * schedule.tapCentre(k), step.level);
+                occupied = occupied || sumOf(tap) > 0.0f;
+                depth += coveredAlong(world.opacity, tap, ray.direction) * (schedule.edges[std::size_t(k) + 1] - schedule.edges[std::size_t(k)]);
+            }
+            scratch.opticalDepth[std::size_t(k) + 1] = depth;
         }
-        depth += density * (step.end - step.begin);
-        scratch.opticalDepth[i] = depth;
 
         const Vec3 pWorld = ray.originWorld + offset * grid.voxelSize;
-        if constexpr (Recorder::active) recorder.step({&step, pWorld, density, density * (step.end - step.begin), transmittanceOf(depth, settings)});
+        if constexpr (Recorder::active) {
+            const float covered = sumOf(depth) - before;
+            recorder.step({&step, pWorld, covered / (step.end - step.begin), covered, transmittanceOf(sumOf(depth), settings)});
+        }
 
-        // Where neither this nor the last tap met a voxel there is no surface to emit.
+        // Where neither this nor the last segment met a voxel there is no surface to emit.
         if (occupied || wasOccupied) {
             if constexpr (RecordsLookups<Recorder>) recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * grid.voxelSize, -ray.direction});
             for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
@@ -146,10 +191,11 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         }
         wasOccupied = occupied;
 
-        // Done when the transmittance is spent for every emitter to come.
-        if (transmittanceOf(opticalDepthAt(schedule, scratch.opticalDepth, i, step.settled), settings) < settings.march.transmittanceCutoff) break;
+        // Done when the transmittance is spent for every emitter to come: what stands in front of it is at least F at `settled`.
+        const Vec3 spent = opticalDepthAt(schedule.edges, scratch.opticalDepth, step.firstTap + step.taps, step.settled);
+        if (transmittanceOf(sumOf(spent), settings) < settings.march.transmittanceCutoff) break;
     }
-    result.opacity = 1.0f - transmittanceOf(depth, settings);
+    result.opacity = 1.0f - transmittanceOf(sumOf(depth), settings);
     return result;
 }
 

@@ -127,7 +127,7 @@ struct MarchSettings {
 
 /// How the light of what a cone meets is taken from the LRSMs.
 struct LrsmGatherSettings {
-    float emitterDelayTaps = 2.0f;     ///< `slab`: transmittance is taken this many tap widths before the emitter ...
+    float emitterDelayTaps = 3.0f;     ///< `slab`: an emitter's own voxels lie within this many tap widths before it ...
     float emitterDelayVoxels = 0.75f;  ///< ... plus this many base voxels,
     float emitterSlantCap = 0.5f;      ///< over max(cosine at the emitter, this)
     LayerSelection layerSelection = LayerSelection::touched;

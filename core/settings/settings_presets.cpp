@@ -58,8 +58,6 @@ Settings fine()
 {
     Settings s;
     s.cones.set.count = 16;
-    s.cones.gather.emitterDelayTaps = 2.5f;
-    s.cones.gather.emitterSlantCap = 0.25f;
     return s;
 }
 
@@ -72,8 +70,6 @@ Settings accurate()
     s.layers.depthLayers = 3;
     s.cones.set.count = 32;
     s.cones.march.startVoxels = 4.0f;
-    s.cones.gather.emitterDelayTaps = 3.5f;
-    s.cones.gather.emitterSlantCap = 0.25f;
     return s;
 }
 

@@ -211,7 +211,7 @@ void addConeRows(std::vector<SettingRow>& rows)
                                                  {"exponential", "linear"}));
     rows.push_back(real<&March::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"}, {-16, 16}));
     rows.push_back(real<&Gather::emitterDelayTaps>(
-        {"emitter_delay_taps", "tap widths", "estimator slab: transmittance is taken this far before the emitter", "ours"}, {0, 16}));
+        {"emitter_delay_taps", "tap widths", "estimator slab: an emitter's own voxels lie no farther before it", "ours"}, {0, 16}));
     rows.push_back(real<&Gather::emitterDelayVoxels>({"emitter_delay_voxels", "base voxels", "... plus this", "ours"}, {0, 16}));
     rows.push_back(real<&Gather::emitterSlantCap>({"emitter_slant_cap", "", "... over max(cosine at the emitter, this)", "ours"}, above(0, 1)));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace lrsm::twin {
@@ -135,10 +136,24 @@ void setGaussian(const Frame& frame, const Program& program)
     program.setArray("phiDenominator", numbers(polynomial["denominator"]));
 }
 
-std::vector<std::string> coneDefines(const Frame& frame, int maxSteps, std::size_t rings)
+/// Most voxel lookups of any schedule: the last two columns of its steps are their number and the index of the first.
+int longestInTaps(const NpyArray& table)
+{
+    const std::size_t columns = std::size_t(table.shape.at(2)), rows = table.bytes.size() / sizeof(float) / columns;
+    float longest = 1.0f;
+    for (std::size_t i = 0; i < rows; ++i) {
+        float last[2];
+        std::memcpy(last, table.bytes.data() + (i * columns + columns - 2) * sizeof(float), sizeof last);
+        longest = std::max(longest, last[0] + last[1]);
+    }
+    return int(longest);
+}
+
+std::vector<std::string> coneDefines(const Frame& frame, const NpyArray& schedules, std::size_t rings)
 {
     std::vector<std::string> defines = specularDefine(frame);
-    defines.push_back("MAX_STEPS " + std::to_string(maxSteps));
+    defines.push_back("MAX_STEPS " + std::to_string(schedules.shape.at(1)));
+    defines.push_back("MAX_TAPS " + std::to_string(longestInTaps(schedules)));
     defines.push_back("RINGS " + std::to_string(rings));
     defines.push_back(frame.is("gaussian", "table") ? "GAUSSIAN 0" : "GAUSSIAN 1");
     defines.push_back(choice(frame, "backface", "BACKFACE", {"cosine", "step"}));
@@ -208,11 +223,10 @@ void direct(Frame& frame, const Options& options)
 void cones(Frame& frame, const Options& options)
 {
     const Json &lights = frame.manifest()["lights"], &table = frame.manifest()["cones"];
-    const int maxSteps = int(frame.input("tables.schedules").shape.at(1));
     const bool slab = frame.is("estimator", "slab");
     const std::vector<std::string> files = {
         "pixel.glsl", "light.glsl", "opacity.glsl", "lrsm.glsl", "schedule.glsl", slab ? "march_slab.glsl" : "march_paper.glsl", "cones.comp.glsl"};
-    const Program& program = options.compute("cones", files, coneDefines(frame, maxSteps, table["rings"].size()));
+    const Program& program = options.compute("cones", files, coneDefines(frame, frame.input("tables.schedules"), table["rings"].size()));
     const Pixels pixels(frame, program);
     setGrid(frame, program);
     setGaussian(frame, program);

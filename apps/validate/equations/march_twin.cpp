@@ -29,28 +29,53 @@ double densityOf(const ConeWorld& world, const DVec3& sample, const DVec3& direc
 }
 
 struct Segment {
-    double begin, end, middle, width;  ///< width: of the tap, voxels
+    double begin, end, middle;
+    double width;      ///< of its taps, voxels
+    double footprint;  ///< in the light's map, voxels
 };
 
-/// F at distance t: linear within a segment, 0 at the apex, constant behind the last.
-double opticalDepth(const std::vector<Segment>& segments, const std::vector<double>& atEnd, double t)
+/// Coverage by axis along the cone: density of each stretch between two edges.
+struct Stretch {
+    double begin, end;
+    DVec3 density;
+};
+
+/// F at distance t: nothing before the first stretch, constant behind the last.
+DVec3 opticalDepth(const std::vector<Stretch>& stretches, double t)
 {
-    double before = 0.0;
-    for (std::size_t i = 0; i < atEnd.size(); ++i) {
-        if (t <= segments[i].end)
-            return t <= segments[i].begin ? before : before + (atEnd[i] - before) * (t - segments[i].begin) / (segments[i].end - segments[i].begin);
-        before = atEnd[i];
+    DVec3 depth(0.0);
+    for (const Stretch& s : stretches) depth += s.density * std::min(std::max(t - s.begin, 0.0), s.end - s.begin);
+    return depth;
+}
+double total(const DVec3& v)
+{
+    return v.x + v.y + v.z;
+}
+
+/// What stands in front of a surface crossed at t: docs/pipeline.md, "in front of the emitter".
+double inFront(const ConeWorld& world, const std::vector<Stretch>& stretches, const Segment& s, const DVec3& direction, const DVec3& normal, double crossing)
+{
+    const LrsmGatherSettings& gather = world.settings.gather;
+    const double cosine = -glm::dot(normal, direction);
+    const double delay = (double(gather.emitterDelayTaps) * s.width + double(gather.emitterDelayVoxels)) / std::max(cosine, double(gather.emitterSlantCap));
+    const DVec3 now = opticalDepth(stretches, crossing - 1.5 * s.width), before = opticalDepth(stretches, crossing - delay);
+    const double rim = 1.0 / std::min(s.width, 8.0), way = 1.0 / std::max(cosine, 0.05);
+    const bool isotropic = world.opacity.axes == OpacityAxes::isotropic;
+    double front = 0.0, crossed = 0.0;
+    for (int axis = 0; axis < 3; ++axis) crossed += (std::abs(normal[axis]) + rim) * way;
+    for (int axis = 0; axis < (isotropic ? 1 : 3); ++axis) {
+        const double own = isotropic ? crossed : std::abs(direction[axis]) * (std::abs(normal[axis]) + rim) * way;
+        front += now[axis] - std::min(std::max(0.0, now[axis] - before[axis]), own);
     }
-    return before;
+    return front;
 }
 
 /// What one light's layers emit within a segment.
-DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, const DVec3& pWorld, const std::vector<Segment>& segments,
-               const std::vector<double>& depths, double& toJump)
+DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, const DVec3& pWorld, const Segment& s, const std::vector<Stretch>& stretches,
+               double& toJump)
 {
     const ConeSettings& settings = world.settings;
-    const Segment& s = segments[depths.size() - 1];
-    const double voxel = double(world.opacity.base.grid.voxelSize), tap = s.width * voxel, step = (s.end - s.begin) * voxel;
+    const double voxel = double(world.opacity.base.grid.voxelSize), tap = s.footprint * voxel, step = (s.end - s.begin) * voxel;
     const Projected p = project(lrsm.projection, pWorld);
     if (!p.valid) return DVec3(0.0);
     const double range = double(lrsm.projection.depthFar) - double(lrsm.projection.depthNear), reach = (0.5 * step + 1.5 * tap) / range;
@@ -78,9 +103,9 @@ DVec3 emission(const ConeWorld& world, const Lrsm& lrsm, const ConeRay& ray, con
         const double ahead = p.depth * range - (double(bounds.depthMin) * range + mean * width), half = 0.5 * rate * step;
         const double w = phi((ahead + half) / sigma) - phi((ahead - half) / sigma);
 
-        const double slant = std::max(facing / glm::length(n), double(settings.gather.emitterSlantCap));
-        const double delay = (double(settings.gather.emitterDelayTaps) * s.width + double(settings.gather.emitterDelayVoxels)) / slant;
-        sum += transmittance(opticalDepth(segments, depths, s.middle - delay), settings) * w * t.radiance;
+        const double crossing = std::min(std::max(s.middle - ahead / (rate * voxel), s.begin - s.width), s.end + s.width);
+        const double front = inFront(world, stretches, s, DVec3(ray.direction), n / glm::length(n), crossing);
+        sum += transmittance(front, settings) * w * t.radiance;
     }
     return sum;
 }
@@ -139,30 +164,30 @@ March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay
     const ConeSettings& settings = world.settings;
     const double voxel = double(world.opacity.base.grid.voxelSize), exit = exitOf(ray, world.opacity.base.grid.resolution);
     March result;
-    std::vector<Segment> segments;
-    std::vector<double> depths;
-    double depth = 0.0;
+    std::vector<Stretch> stretches;
     for (const MarchStep& step : schedule.steps) {
-        segments.push_back({double(step.begin), double(step.end), 0.5 * (double(step.begin) + double(step.end)), double(step.tapWidth)});
-        const Segment& s = segments.back();
-        result.toJump = std::min(result.toJump, std::abs(s.begin - 3.0 * s.width - exit));
-        if (s.begin - 3.0 * s.width > exit) break;
+        const double begin = double(step.begin), end = double(step.end), diameter = double(step.diameter);
+        const Segment s{.begin = begin, .end = end, .middle = 0.5 * (begin + end), .width = double(step.tapWidth), .footprint = std::max(0.5, 0.13 * diameter)};
+        result.toJump = std::min(result.toJump, std::abs(s.begin - 1.5 * s.width - exit));
+        if (s.begin - 1.5 * s.width > exit) break;
 
-        const DVec3 offset = DVec3(ray.direction) * s.middle;
-        double density = 0.0;
-        if (step.begin > 0.0f || settings.march.startVoxels == 0.0f) {  // the first segment lies in the receiver's own voxels
-            density = densityOf(world, field(DVec3(ray.originVoxels) + offset, double(step.level)), DVec3(ray.direction));
+        for (int k = 0; k < step.taps; ++k) {
+            const double from = begin + (end - begin) * k / step.taps, to = begin + (end - begin) * (k + 1) / step.taps;
+            DVec3 density(0.0);
+            if (step.begin > 0.0f || settings.march.startVoxels == 0.0f) {  // the first segment lies in the receiver's own voxels
+                density = field(DVec3(ray.originVoxels) + DVec3(ray.direction) * (0.5 * (from + to)), double(step.level));
+                density = world.opacity.axes == OpacityAxes::isotropic ? DVec3(density.x, 0.0, 0.0) : glm::abs(DVec3(ray.direction)) * density;
+            }
+            stretches.push_back({from, to, density});
         }
-        depth += density * (s.end - s.begin);
-        depths.push_back(depth);
-        for (const Lrsm& lrsm : world.lrsms)
-            result.radiance += emission(world, lrsm, ray, DVec3(ray.originWorld) + offset * voxel, segments, depths, result.toJump);
+        const DVec3 pWorld = DVec3(ray.originWorld) + DVec3(ray.direction) * (s.middle * voxel);
+        for (const Lrsm& lrsm : world.lrsms) result.radiance += emission(world, lrsm, ray, pWorld, s, stretches, result.toJump);
 
-        const double left = transmittance(opticalDepth(segments, depths, double(step.settled)), settings);
+        const double left = transmittance(total(opticalDepth(stretches, double(step.settled))), settings);
         result.toJump = std::min(result.toJump, std::abs(left - double(settings.march.transmittanceCutoff)));
         if (left < double(settings.march.transmittanceCutoff)) break;
     }
-    result.opacity = 1.0 - transmittance(depth, settings);
+    result.opacity = 1.0 - transmittance(total(opticalDepth(stretches, 1e30)), settings);
     return result;
 }
 

@@ -114,7 +114,6 @@ SampledFrame sampleGather(const GBuffer& gbuffer, const Camera& camera, const Co
     std::vector<SampleRecorder> chunks((pixels + kPixelsPerChunk - 1) / kPixelsPerChunk, SampleRecorder(count, seed, slab));
     parallelFor(pixels, kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
         MarchScratch scratch;
-        scratch.opticalDepth.resize(plan.longestSchedule);
         SampleRecorder& recorder = chunks[begin / kPixelsPerChunk];
         for (std::size_t i = begin; i < end; ++i) {
             const int x = static_cast<int>(i % std::size_t(gbuffer.width)), y = static_cast<int>(i / std::size_t(gbuffer.width));

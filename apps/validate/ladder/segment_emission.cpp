@@ -21,13 +21,15 @@ SegmentEmission segmentEmission(const ConeWorld& world, std::span<const Rsm* con
     }
 
     // The march's own function, nothing in front of the segment.
-    const MarchSchedule schedule{sample.tanHalf, {sample.steps, sample.steps + sample.step + 1}};
-    const MarchScratch clear{std::vector<float>(schedule.steps.size(), 0.0f)};
+    MarchSchedule schedule{.tanHalf = sample.tanHalf, .steps = {step}, .edges = {step.begin, step.end}};
+    schedule.steps[0].firstTap = 0;
+    schedule.steps[0].taps = 1;
+    const MarchScratch clear{{Vec3(0.0f), Vec3(0.0f)}};
     ConeCounts counts;
     NoRecorder recorder;
     Vec3 shipped(0.0f);
     for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
-        shipped += slabEmission(world, light, sample.ray, sample.sphere.centre, schedule, schedule.steps.size() - 1, clear, counts, recorder);
+        shipped += slabEmission(world, light, sample.ray, sample.sphere.centre, schedule, 0, clear, counts, recorder);
     emission.segment = double(shipped.x + shipped.y + shipped.z) / 3.0;
     return emission;
 }

@@ -12,6 +12,7 @@ TEST_CASE("schedule: ends at maxSteps, a step that no longer changes the distanc
     settings.march.maxSteps = 7;
     CHECK(makeSchedule(settings, 0.1f, 1e6f).steps.size() == 7);
     settings.march.maxSteps = 100000;
+    settings.march.estimator = Estimator::paper;  // segments of `slab` are a voxel long at least
     settings.march.step = 1e-6f;
     settings.march.minDiameterVoxels = 1e-3f;
     settings.march.startVoxels = 1000.0f;

@@ -64,7 +64,7 @@ struct World {
     ConeResult march(const Sampler& sampler, const ConeRay& ray, float tanHalf, ConeCounts& counts, Recorder& recorder) const
     {
         const MarchSchedule schedule = makeSchedule(settings, tanHalf, 1.74f * kResolution);
-        MarchScratch scratch{std::vector<float>(schedule.steps.size())};
+        MarchScratch scratch;
         return settings.march.estimator == Estimator::slab ? marchSlab(view(), sampler, ray, schedule, scratch, counts, recorder)
                                                            : marchPaper(view(), sampler, ray, schedule, scratch, counts, recorder);
     }

@@ -94,7 +94,7 @@ std::unique_ptr<Cones> randomCones(const VoxelGrid& grid, int count, SearchRando
 /// Of the scalar march, cone by cone.
 ConeResult scalar(const ConeWorld& world, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts)
 {
-    MarchScratch scratch{std::vector<float>(schedule.steps.size())};
+    MarchScratch scratch;
     NoRecorder recorder;
     return marchSlab(world, GenericSampler{world.opacity, world.settings.march.filterFraction}, ray, schedule, scratch, counts, recorder);
 }

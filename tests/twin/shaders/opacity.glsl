@@ -21,13 +21,19 @@ vec3 sampleOpacity(vec3 pVoxels, float level)
 #endif
 }
 
-float densityAlong(vec3 tap, vec3 direction)
+// Density along the cone: by axis, and all.
+vec3 coveredAlong(vec3 tap, vec3 direction)
 {
 #ifdef DIRECTIONAL
-    return dot(abs(direction), tap);
+    return abs(direction) * tap;
 #else
-    return tap.x;
+    return vec3(tap.x, 0, 0);
 #endif
+}
+float densityAlong(vec3 tap, vec3 direction)
+{
+    vec3 covered = coveredAlong(tap, direction);
+    return covered.x + covered.y + covered.z;
 }
 
 // Distance in voxels at which a ray leaves the grid.

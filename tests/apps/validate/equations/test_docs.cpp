@@ -87,6 +87,6 @@ TEST_CASE("defaults that are choices: a change of one is a change of every pictu
     CHECK((c.set.apertureScale == 0.5f && c.march.step == 0.5f && c.march.startVoxels == 3.0f && c.march.normalOffsetVoxels == 1.0f &&
            c.march.minDiameterVoxels == 1.0f && c.march.push == 0.0f));
     CHECK((c.march.transmittanceCutoff == 0.01f && c.march.densityK == 2.0f && c.march.voxelLevelBias == -2.0f));
-    CHECK((c.gather.emitterDelayTaps == 2.0f && c.gather.emitterDelayVoxels == 0.75f && c.gather.emitterSlantCap == 0.5f));
+    CHECK((c.gather.emitterDelayTaps == 3.0f && c.gather.emitterDelayVoxels == 0.75f && c.gather.emitterSlantCap == 0.5f));
     CHECK((c.gather.vRadiusScale == 1.0f && c.gather.rsmLevelBias == 0.0f && c.gather.rsmMinLevel == 0.0f && c.specular.apertureDegrees == 10.0f));
 }
