@@ -8,7 +8,7 @@
 
 namespace lrsm {
 
-inline constexpr int kTile = 16;                    ///< edge of the square of pixels that is one piece of work
+inline constexpr int kTile = 16;                 ///< edge of the square of pixels that is one piece of work
 inline constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
 
 /// All tiles of a picture, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts). Returns the counts' sum.

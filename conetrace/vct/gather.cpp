@@ -40,7 +40,8 @@ RadianceVolume buildRadiance(const GatherInput& input, PassLog& log)
     const Settings& settings = input.settings;
     std::optional<VoxelSurface> surface;
     if (readsSurface(settings.vct))
-        surface = log.run("vct surface", kPassedOn, [&] { return voxelSurface(input.scene, input.opacity.base, settings.voxel, settings.surface.textureFilter); });
+        surface =
+            log.run("vct surface", kPassedOn, [&] { return voxelSurface(input.scene, input.opacity.base, settings.voxel, settings.surface.textureFilter); });
     RadianceVolume volume = log.run("vct inject", kPassedOn, [&] { return injectRadiance(input, surface ? &*surface : nullptr); });
     surface.reset();
     return log.run("vct mips", kWorldPass, [&] {

@@ -10,7 +10,9 @@ std::size_t heldBytes(const MemoryQuestion& question)
 {
     const VoxelSettings& voxels = question.settings.voxel;
     switch (question.unknowns) {
-    case Unknowns::least: return predictRadianceBytes(mapBricks({.grid = {.resolution = voxels.resolution}, .bricks = std::vector<std::uint64_t>(predictBitGridBytes(voxels.resolution) / sizeof(std::uint64_t), 0)}));
+    case Unknowns::least:
+        return predictRadianceBytes(mapBricks({.grid = {.resolution = voxels.resolution},
+                                               .bricks = std::vector<std::uint64_t>(predictBitGridBytes(voxels.resolution) / sizeof(std::uint64_t), 0)}));
     case Unknowns::most: return predictDenseRadianceBytes(voxels.resolution);
     case Unknowns::found: break;
     }

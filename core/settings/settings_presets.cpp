@@ -77,12 +77,13 @@ Settings accurate()
     return s;
 }
 
-/// The default's cones through radiance in voxels.
+/// The default's cones through radiance in voxels. Voxels are lit at a point of theirs: the mean over a part-lit voxel's RSM texels would widen what is lit.
 Settings vct()
 {
     Settings s;
     s.method = Method::vct;
     s.voxel.resolution = 256;
+    s.vct.injection = Injection::voxel;
     return s;
 }
 
@@ -90,6 +91,7 @@ Settings vct()
 Settings vctPaper()
 {
     Settings s = vct();
+    s.vct.injection = Injection::rsm;
     s.direct.shadows = Shadows::cone;
     ConeSettings& c = s.cones;
     c.set.apertureScale = 1.0f;

@@ -40,9 +40,9 @@ inline constexpr int kTravelDirections = 6;
 /// Radiance is times `preExposure`, as in the RSMs.
 struct RadianceVolume {
     float preExposure = 1.0f;
-    std::vector<BrickMap> maps;                                     ///< one a level, down to 1^3
-    std::vector<Vec4> base;                                         ///< rgb, occlusion; order of maps[0]
-    std::vector<Vec4> normals;                                      ///< xyz, length <= 1; w 0
+    std::vector<BrickMap> maps;                                           ///< one a level, down to 1^3
+    std::vector<Vec4> base;                                               ///< rgb, occlusion; order of maps[0]
+    std::vector<Vec4> normals;                                            ///< xyz, length <= 1; w 0
     std::vector<std::array<std::vector<Vec4>, kTravelDirections>> faces;  ///< of level l >= 1, [0] unused
     ConversionCounts conversions;
     Counters counters;

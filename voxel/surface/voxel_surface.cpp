@@ -126,8 +126,7 @@ double areaInVoxel(const glm::dvec3 (&triangle)[3], const IVec3& corner)
     for (const DVec3& p : triangle) polygon.push(p - DVec3(corner));
     for (int axis = 0; axis < 3; ++axis) polygon = cut(cut(polygon, axis, -1.0, 0.0), axis, 1.0, 1.0);
     DVec3 doubled(0.0);
-    for (std::size_t k = 2; k < polygon.count; ++k)
-        doubled += glm::cross(polygon.corner[k - 1] - polygon.corner[0], polygon.corner[k] - polygon.corner[0]);
+    for (std::size_t k = 2; k < polygon.count; ++k) doubled += glm::cross(polygon.corner[k - 1] - polygon.corner[0], polygon.corner[k] - polygon.corner[0]);
     return 0.5 * glm::length(doubled);
 }
 
