@@ -10,9 +10,12 @@ std::size_t heldBytes(const MemoryQuestion& question)
 {
     const VoxelSettings& voxels = question.settings.voxel;
     switch (question.unknowns) {
-    case Unknowns::least:
-        return predictRadianceBytes(mapBricks({.grid = {.resolution = voxels.resolution},
-                                               .bricks = std::vector<std::uint64_t>(predictBitGridBytes(voxels.resolution) / sizeof(std::uint64_t), 0)}));
+    case Unknowns::least: {
+        BitGrid nothing;
+        nothing.grid.resolution = voxels.resolution;
+        nothing.bricks.assign(predictBitGridBytes(voxels.resolution) / sizeof(std::uint64_t), 0);
+        return predictRadianceBytes(mapBricks(nothing));
+    }
     case Unknowns::most: return predictDenseRadianceBytes(voxels.resolution);
     case Unknowns::found: break;
     }
@@ -24,7 +27,7 @@ std::size_t heldBytes(const MemoryQuestion& question)
 std::vector<MemoryRow> predictRadiance(const MemoryQuestion& question)
 {
     const int n = question.settings.voxel.resolution;
-    return {{.structure = "vct volume",
+    return {{.structure = "vct",
              .pass = "vct mips",
              .detail = std::to_string(n) + "^3, six directions",
              .predicted = heldBytes(question),

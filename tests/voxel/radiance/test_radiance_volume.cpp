@@ -1,5 +1,6 @@
 #include "catch.h"
 
+#include "voxel/radiance/octree_bytes.h"
 #include "voxel/radiance/radiance_volume.h"
 
 #include <random>
@@ -249,4 +250,23 @@ TEST_CASE("radiance volume: bytes as the paper counts them, and as predicted", "
         CHECK(predicted <= predictDenseRadianceBytes(32));
         if (density == 0.5) CHECK(predicted == predictDenseRadianceBytes(32));
     }
+}
+
+TEST_CASE("octree bytes: one voxel is a path from the root, a full grid has every node", "[voxel][radiance]")
+{
+    BitGrid bits;
+    bits.grid.resolution = 16;
+    bits.bricks.assign(predictBitGridBytes(16) / sizeof(std::uint64_t), 0);
+    bits.bricks[bits.brickIndex(13, 2, 7)] = std::uint64_t(1) << BitGrid::bitIndex(13, 2, 7);
+    CHECK(countOccupiedTexels(bits) == std::vector<std::size_t>{1, 1, 1, 1, 1});
+    const OctreeBytes path = octreeBytes(countOccupiedTexels(bits), 16);
+    CHECK(path.occupiedOnly == 16 + 4 * 52);
+    CHECK(path.tilesOfEight == 8 * 16 + (1 + 3 * 8) * 52);
+    CHECK(path.bricks == (1 + 3 * 8) * (36 + 27 * 16));
+
+    bits.bricks.assign(bits.bricks.size(), ~std::uint64_t(0));
+    CHECK(countOccupiedTexels(bits) == std::vector<std::size_t>{4096, 512, 64, 8, 1});
+    const OctreeBytes full = octreeBytes(countOccupiedTexels(bits), 16);
+    CHECK(full.tilesOfEight == full.occupiedOnly);
+    CHECK(full.occupiedOnly == full.dense + 585 * 4);  // but for the links
 }

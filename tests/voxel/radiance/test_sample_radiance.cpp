@@ -18,7 +18,8 @@ RadianceVolume speckled(int n, const VctSettings& settings)
     BitGrid bits;
     bits.grid.resolution = n;
     bits.bricks.assign(predictBitGridBytes(n) / sizeof(std::uint64_t), 0);
-    for (std::uint64_t& brick : bits.bricks) brick = random() % 3 == 0 ? (std::uint64_t(random()) << 32 | random()) & (std::uint64_t(random()) << 32 | random()) : 0;
+    for (std::uint64_t& brick : bits.bricks)
+        brick = random() % 3 == 0 ? (std::uint64_t(random()) << 32 | random()) & (std::uint64_t(random()) << 32 | random()) : 0;
     RadianceVolume volume = darkVolume(bits);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (std::size_t i = 0; i < volume.base.size(); ++i) {
