@@ -243,7 +243,7 @@ void addLookupRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&Specular::aperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
     rows.push_back(real<&Specular::apertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
 
-    rows.push_back(choice<&Vct::storage>({"vct_storage", "", "radiance volumes in half or in float32", "paper Sec. 6: 16-bit float"}, {"gpu", "float32"}));
+    rows.push_back(choice<&Vct::storage>({"vct_storage", "", "radiance volumes in half or in float32", "paper Sec. 6: gpu"}, {"gpu", "float32"}));
     rows.push_back(choice<&Vct::halfRounding>({"vct_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
     rows.push_back(choice<&Vct::injection>({"vct_injection", "", "a voxel's light: the mean over its RSM texels, or its own surface lit", "[CNS*11]: rsm"},
                                            {"rsm", "voxel"}));
@@ -253,8 +253,7 @@ void addLookupRows(std::vector<SettingRow>& rows)
         real<&Vct::facing>({"vct_facing", "", "a surface that faces a cone's way by more than this cosine is dark to it; 2: none is", "ours"}, {0, 2}));
     rows.push_back(
         choice<&Vct::weights>({"vct_weights", "", "of the three directional volumes: |d|, or d^2", "ours; [CNS*11] gives none"}, {"absolute", "squared"}));
-    rows.push_back(
-        choice<&Vct::opacity>({"vct_opacity", "", "a texel's opacity scaled to the step's length, or as it is", "[CNS*11] Sec. 7.1: step"}, {"step", "none"}));
+    rows.push_back(choice<&Vct::opacity>({"vct_opacity", "", "a texel's opacity scaled to the step's length, or as it is", "ours"}, {"step", "none"}));
 
     rows.push_back(
         flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));
