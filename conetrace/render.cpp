@@ -4,6 +4,7 @@
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/lrsm/gather.h"
+#include "conetrace/vct/gather.h"
 #include "core/base/errors.h"
 #include "core/base/float_state.h"
 #include "core/scene/check_scene.h"
@@ -82,6 +83,7 @@ GatherMethod methodOf(Method method)
 {
     switch (method) {
     case Method::lrsm: return lrsmMethod();
+    case Method::vct: return vctMethod();
     }
     throw InputError("method", "is none of the known");
 }

@@ -126,6 +126,16 @@ LightSpacePoint projectToLight(const LightProjection& projection, const Vec3& pW
     return point;
 }
 
+Vec3 unprojectFromLight(const LightProjection& projection, float u, float v, float depth)
+{
+    using DVec3 = glm::dvec3;
+    const double distance = double(projection.depthNear) + double(depth) * double(projection.depthRange());
+    const double x = (2.0 * double(u) - 1.0) * double(projection.halfWidth), y = (1.0 - 2.0 * double(v)) * double(projection.halfWidth);
+    const DVec3 across = x * DVec3(projection.right) + y * DVec3(projection.up), forward(projection.forward), from(projection.position);
+    if (projection.type == LightType::directional) return Vec3(from + across + distance * forward);
+    return Vec3(from + (distance / std::sqrt(1.0 + x * x + y * y)) * (across + forward));
+}
+
 Mat4 clipFromWorld(const LightProjection& projection)
 {
     Mat4 m(0.0f);

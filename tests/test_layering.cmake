@@ -1,10 +1,11 @@
 cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
-# The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm <- conetrace;
+# The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm, conetrace/vct <- conetrace;
+# voxel <- voxel/surface, voxel/radiance <- conetrace/vct;
 # conetrace, reference <- the commands that need libraries of their own <- the program. A folder that holds a target has a row.
 # `reference` shares scene, materials and lights with the passes, and no visibility, filtering or gathering code: so it can judge.
-set(passes core/base core/settings core/scene core/raster voxel lrsm conetrace conetrace/frame conetrace/lrsm)
+set(passes core/base core/settings core/scene core/raster voxel voxel/surface voxel/radiance lrsm conetrace conetrace/frame conetrace/lrsm conetrace/vct)
 set(allowed_core/base core/base)
 set(allowed_core/settings core/base core/settings)
 set(allowed_core/scene core/base core/settings core/scene)
@@ -12,9 +13,12 @@ set(allowed_core/raster core/base core/scene core/raster)
 set(allowed_core/imageio core/base core/imageio)
 set(allowed_core/report core/base core/report)
 set(allowed_voxel core/base core/settings core/scene core/raster voxel)
+set(allowed_voxel/surface ${allowed_voxel} voxel/surface)
+set(allowed_voxel/radiance ${allowed_voxel} voxel/radiance)
 set(allowed_lrsm core/base core/settings core/scene core/raster lrsm)
 set(allowed_conetrace/frame core/base core/settings core/scene core/raster voxel lrsm conetrace/frame)
 set(allowed_conetrace/lrsm ${allowed_conetrace/frame} conetrace/lrsm)
+set(allowed_conetrace/vct ${allowed_conetrace/frame} voxel/surface voxel/radiance conetrace/vct)
 set(allowed_conetrace ${passes})
 set(allowed_reference core/base core/scene reference)
 set(allowed_apps/common ${passes} core/imageio core/report apps/common)

@@ -47,41 +47,61 @@ bool hasNoArea(const Vec3& a, const Vec3& b, const Vec3& c)
 
 enum class NoArea { skip, keep };
 
-/// corners(i) gives the three world positions of triangle i.
-template <class Corners>
-void voxelizeInto(BitGrid& bits, std::size_t count, Voxelization mode, NoArea noArea, const Corners& corners)
+/// corners(i) gives the three world positions of triangle i; visit(i, setup, rows) is called in parallel, for parts of its rows if the triangle is big.
+template <class Corners, class Visit>
+void forTriangles(const VoxelGrid& grid, std::size_t count, Voxelization mode, NoArea noArea, const Corners& corners, const Visit& visit)
 {
-    std::vector<std::vector<TriangleSetup>> bigOfChunk((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
+    struct Big {
+        std::size_t triangle;
+        TriangleSetup setup;
+    };
+    std::vector<std::vector<Big>> bigOfChunk((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
     parallelFor(count, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::array<Vec3, 3> p = corners(i);
             if (noArea == NoArea::skip && hasNoArea(p[0], p[1], p[2])) continue;
-            const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], bits.grid);
+            const FixedPieces pieces = fixedFromWorld(p[0], p[1], p[2], grid);
             for (int k = 0; k < pieces.count; ++k) {
-                const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], bits.grid.resolution, mode);
+                const TriangleSetup setup = setUpTriangle(pieces.piece[std::size_t(k)], grid.resolution, mode);
                 if (setup.empty) continue;
                 if (setup.columnCount() > kBigTriangleColumns)
-                    bigOfChunk[begin / kTrianglesPerTask].push_back(setup);
+                    bigOfChunk[begin / kTrianglesPerTask].push_back({i, setup});
                 else
-                    voxelizeRows(setup, setup.cells[setup.rowAxis], mode, bits);
+                    visit(i, setup, setup.cells[setup.rowAxis]);
             }
         }
     });
 
     struct Task {
-        const TriangleSetup* setup;
+        const Big* big;
         Span rows;
     };
     std::vector<Task> tasks;
-    for (const auto& big : bigOfChunk) {
-        for (const TriangleSetup& setup : big) {
-            const Span rows = setup.cells[setup.rowAxis];
-            for (int row = rows.lo; row <= rows.hi; row += kRowsPerTask) tasks.push_back({&setup, {row, std::min(row + kRowsPerTask - 1, rows.hi)}});
+    for (const auto& chunk : bigOfChunk) {
+        for (const Big& big : chunk) {
+            const Span rows = big.setup.cells[big.setup.rowAxis];
+            for (int row = rows.lo; row <= rows.hi; row += kRowsPerTask) tasks.push_back({&big, {row, std::min(row + kRowsPerTask - 1, rows.hi)}});
         }
     }
     parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) voxelizeRows(*tasks[i].setup, tasks[i].rows, mode, bits);
+        for (std::size_t i = begin; i < end; ++i) visit(tasks[i].big->triangle, tasks[i].big->setup, tasks[i].rows);
     });
+}
+
+/// The same for all that a scene shows: visit(mesh, triangle, setup, rows).
+template <class Visit>
+void forTrianglesOf(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const Visit& visit)
+{
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        const Mesh& mesh = scene.meshes[m];
+        if (isDrawnNowhere(scene, mesh)) continue;
+        const auto corners = [&](std::size_t i) {
+            const auto& t = mesh.triangles[i];
+            return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+        };
+        forTriangles(grid, mesh.triangles.size(), mode, NoArea::skip, corners,
+                     [&](std::size_t i, const TriangleSetup& setup, Span rows) { visit(m, i, setup, rows); });
+    }
 }
 
 }  // namespace
@@ -96,22 +116,26 @@ BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)));
     checkBounds(scene.bounds);
     BitGrid bits = emptyGrid(gridOf(scene, settings));
-    for (const Mesh& mesh : scene.meshes) {
-        if (isDrawnNowhere(scene, mesh)) continue;
-        voxelizeInto(bits, mesh.triangles.size(), settings.mode, NoArea::skip, [&](std::size_t i) {
-            const auto& t = mesh.triangles[i];
-            return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-        });
-    }
+    forTrianglesOf(scene, bits.grid, settings.mode,
+                   [&](std::size_t, std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, settings.mode, bits); });
     return bits;
+}
+
+void forEachFragment(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const std::function<void(const BrickFragments&)>& visit)
+{
+    forTrianglesOf(scene, grid, mode, [&](std::size_t mesh, std::size_t triangle, const TriangleSetup& setup, Span rows) {
+        forEachBrick(setup, rows, mode, grid.resolution, [&](std::size_t brick, std::uint64_t mask) {
+            visit({.mesh = std::uint32_t(mesh), .triangle = std::uint32_t(triangle), .piece = setup.triangle, .brick = brick, .voxels = mask});
+        });
+    });
 }
 
 BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode)
 {
     BitGrid bits = emptyGrid(grid);
-    voxelizeInto(bits, corners.size() / 3, mode, NoArea::keep, [&](std::size_t i) {
-        return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-    });
+    const auto cornersOf = [&](std::size_t i) { return std::array<Vec3, 3>{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; };
+    forTriangles(grid, corners.size() / 3, mode, NoArea::keep, cornersOf,
+                 [&](std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, mode, bits); });
     return bits;
 }
 

@@ -3,6 +3,9 @@
 #include "core/scene/scene.h"
 #include "core/settings/settings.h"
 #include "voxel/bit_grid.h"
+#include "voxel/fixed_triangle.h"
+
+#include <functional>
 
 namespace lrsm {
 
@@ -16,6 +19,16 @@ VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings);
 /// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it; unless its mesh is drawn
 /// nowhere.
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
+
+/// Of one triangle: voxels of one brick that it sets, as `voxelize` would.
+struct BrickFragments {
+    std::uint32_t mesh, triangle;
+    const FixedTriangle& piece;  ///< the triangle, or the part of it that a huge one was cut to
+    std::size_t brick;
+    std::uint64_t voxels;  ///< bits as in BitGrid
+};
+/// Every (triangle, voxel) pair of `voxelize`, each once; in parallel and in no order.
+void forEachFragment(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const std::function<void(const BrickFragments&)>& visit);
 
 /// The same for one bare triangle list in world space: what tests drive. Triangles of no area voxelize as the segment or point they are.
 BitGrid voxelizeTriangles(const std::vector<Vec3>& corners, const VoxelGrid& grid, Voxelization mode);

@@ -89,13 +89,14 @@ struct DepthWalk {
     }
 };
 
-/// Sets bits, gathering those of one brick before touching memory.
-class BrickWriter {
+/// Gathers the voxels of one brick before `visit(brick, mask)` is told of them.
+template <class Visit>
+class BrickGatherer {
   public:
-    explicit BrickWriter(BitGrid& bits) : bricks_(bits.bricks.data()) {}
-    ~BrickWriter() { flush(); }
-    BrickWriter(const BrickWriter&) = delete;
-    BrickWriter& operator=(const BrickWriter&) = delete;
+    explicit BrickGatherer(const Visit& visit) : visit_(visit) {}
+    ~BrickGatherer() { flush(); }
+    BrickGatherer(const BrickGatherer&) = delete;
+    BrickGatherer& operator=(const BrickGatherer&) = delete;
 
     void add(std::size_t brick, std::uint64_t mask)
     {
@@ -110,12 +111,10 @@ class BrickWriter {
   private:
     void flush()
     {
-        if (mask_ == 0) return;
-        const std::atomic_ref<std::uint64_t> word(bricks_[brick_]);
-        if ((word.load(std::memory_order_relaxed) & mask_) != mask_) word.fetch_or(mask_, std::memory_order_relaxed);
+        if (mask_ != 0) visit_(brick_, mask_);
     }
 
-    std::uint64_t* bricks_;
+    const Visit& visit_;
     std::size_t brick_ = 0;
     std::uint64_t mask_ = 0;
 };
@@ -123,7 +122,8 @@ class BrickWriter {
 // Bits 0..k along an axis of a brick: bit strides 1, 4, 16.
 constexpr std::uint64_t kRun[3][4] = {{0x1, 0x3, 0x7, 0xF}, {0x1, 0x11, 0x111, 0x1111}, {0x1, 0x10001, 0x100010001, 0x1000100010001}};
 
-void setColumn(BrickWriter& writer, std::size_t brickBase, int bitBase, std::size_t depthAxis, std::size_t brickStride, Span depth)
+template <class Gatherer>
+void setColumn(Gatherer& writer, std::size_t brickBase, int bitBase, std::size_t depthAxis, std::size_t brickStride, Span depth)
 {
     const int shift = 2 * int(depthAxis);
     for (int k = depth.lo; k <= depth.hi; k = (k | 3) + 1) {
@@ -135,16 +135,16 @@ void setColumn(BrickWriter& writer, std::size_t brickBase, int bitBase, std::siz
 
 constexpr int kMaxResolution = 2048;
 
-template <Voxelization mode>
-void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& bits)
+template <Voxelization mode, class Visit>
+void visitRowsAs(const TriangleSetup& t, Span rows, int resolution, const Visit& visit)
 {
     const std::size_t u = t.columnAxis, v = t.rowAxis, w = t.depthAxis;
     const Span columns = t.cells[u], depths = t.cells[w];
     constexpr bool overlap = mode != Voxelization::raster;  // raster looks at one projection only
 
-    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(bits.grid.resolution));
+    const std::size_t edge = std::size_t(BitGrid::bricksPerEdge(resolution));
     const std::size_t stride[3] = {1, edge, edge * edge};
-    BrickWriter writer(bits);
+    BrickGatherer<Visit> writer(visit);
     if (t.boxIsExact) {
         for (int j = rows.lo; j <= rows.hi; ++j)
             for (int i = columns.lo; i <= columns.hi; ++i)
@@ -198,6 +198,16 @@ void voxelizeRowsAs(const TriangleSetup& t, Span rows, BitGrid& bits)
     }
 }
 
+template <class Visit>
+void visitRows(const TriangleSetup& setup, Span rows, Voxelization mode, int resolution, const Visit& visit)
+{
+    switch (mode) {
+    case Voxelization::conservative: return visitRowsAs<Voxelization::conservative>(setup, rows, resolution, visit);
+    case Voxelization::thin: return visitRowsAs<Voxelization::thin>(setup, rows, resolution, visit);
+    case Voxelization::raster: return visitRowsAs<Voxelization::raster>(setup, rows, resolution, visit);
+    }
+}
+
 }  // namespace
 
 TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxelization mode)
@@ -240,11 +250,15 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
 
 void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& bits)
 {
-    switch (mode) {
-    case Voxelization::conservative: return voxelizeRowsAs<Voxelization::conservative>(setup, rows, bits);
-    case Voxelization::thin: return voxelizeRowsAs<Voxelization::thin>(setup, rows, bits);
-    case Voxelization::raster: return voxelizeRowsAs<Voxelization::raster>(setup, rows, bits);
-    }
+    visitRows(setup, rows, mode, bits.grid.resolution, [&](std::size_t brick, std::uint64_t mask) {
+        const std::atomic_ref<std::uint64_t> word(bits.bricks[brick]);
+        if ((word.load(std::memory_order_relaxed) & mask) != mask) word.fetch_or(mask, std::memory_order_relaxed);
+    });
+}
+
+void forEachBrick(const TriangleSetup& setup, Span rows, Voxelization mode, int resolution, const BrickVisitor& visit)
+{
+    visitRows(setup, rows, mode, resolution, visit);
 }
 
 }  // namespace lrsm

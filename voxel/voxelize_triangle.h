@@ -4,6 +4,8 @@
 #include "voxel/fixed_triangle.h"
 #include "voxel/span_walk.h"
 
+#include <functional>
+
 namespace lrsm {
 
 /// How one triangle meets the grid. Columns run along the dominant axis of its normal, rows along `rowAxis`.
@@ -26,5 +28,9 @@ TriangleSetup setUpTriangle(const FixedTriangle& triangle, int resolution, Voxel
 /// Sets the voxels of rows [rows.lo, rows.hi] (within cells[rowAxis]). May run concurrently on one grid: bits are set with relaxed
 /// atomic ORs, which commute.
 void voxelizeRows(const TriangleSetup& setup, Span rows, Voxelization mode, BitGrid& bits);
+
+/// The same voxels, told instead of set: bit masks of bricks as in BitGrid, each voxel once. A brick may come several times.
+using BrickVisitor = std::function<void(std::size_t brick, std::uint64_t mask)>;
+void forEachBrick(const TriangleSetup& setup, Span rows, Voxelization mode, int resolution, const BrickVisitor& visit);
 
 }  // namespace lrsm

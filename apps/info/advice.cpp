@@ -134,7 +134,7 @@ std::vector<Advice> adviseSettings(const Scene& scene, const SceneAnalysis& anal
     Adviser adviser(scene, analysis, settings, width, height);
     if (settings.force.everything) adviser.add("force_everything", "true", "false", "it is for tests of the analysis", true);
     if (!settings.layers.dropEmpty) adviser.add("drop_empty", "false", "true", "layers without a lit texel send nothing", true);
-    adviseLayers(analysis, settings, adviser);
+    if (settings.method == Method::lrsm) adviseLayers(analysis, settings, adviser);
     adviseResolutions(analysis, settings, adviser);
     return adviser.advice;
 }

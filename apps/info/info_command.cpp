@@ -10,6 +10,8 @@
 #include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
 #include "core/settings/settings_table.h"
+#include "voxel/radiance/octree_bytes.h"
+#include "voxel/voxelize.h"
 
 #include <iostream>
 #include <memory>
@@ -21,6 +23,7 @@ namespace {
 
 struct InfoArguments : CommonOptions {
     bool list = false;
+    bool sparse = false;
 };
 
 /// Metres as millimetres below 1 m.
@@ -99,6 +102,36 @@ void printAdvice(std::ostream& out, const std::vector<Advice>& advice)
             << (change.bitsEqual ? ", every bit kept" : "") << "\n";
 }
 
+/// What an octree over the scene's voxels would take in place of the dense radiance grid.
+struct SparseReport {
+    std::vector<std::size_t> occupied;
+    OctreeBytes bytes;
+};
+SparseReport countSparse(const Scene& scene, const VoxelSettings& settings)
+{
+    const std::vector<std::size_t> occupied = countOccupiedTexels(voxelize(scene, settings));
+    return {occupied, octreeBytes(occupied, settings.resolution)};
+}
+
+nlohmann::ordered_json sparseJson(const SparseReport& report)
+{
+    return {{"occupied", report.occupied},
+            {"dense", report.bytes.dense},
+            {"octree_occupied_only", report.bytes.occupiedOnly},
+            {"octree_tiles_of_eight", report.bytes.tilesOfEight},
+            {"octree_bricks", report.bytes.bricks}};
+}
+
+void printSparse(std::ostream& out, const SparseReport& report)
+{
+    const auto line = [&](const char* what, std::size_t bytes) { out << "  " << what << megabytes(bytes) << "\n"; };
+    out << "radiance in voxels, dense and as octrees over the " << report.occupied.front() << " occupied ones (counted, none is built):\n";
+    line("dense grid                                  ", report.bytes.dense);
+    line("octree, occupied nodes only                 ", report.bytes.occupiedOnly);
+    line("octree, children in tiles of eight          ", report.bytes.tilesOfEight);
+    line("octree, tiles of eight with bricks of 3^3   ", report.bytes.bricks);
+}
+
 int listBuiltins(bool json)
 {
     nlohmann::ordered_json names = nlohmann::ordered_json::array();
@@ -123,13 +156,14 @@ int runInfo(const InfoArguments& options)
     const auto memory = predictMemory({scene, needs, settings, size.x, size.y});
 
     if (options.json) {
-        const nlohmann::ordered_json json = {{"version", LRSM_VERSION},
-                                             {"scene", sceneJson(scene, hashScene(scene))},
-                                             {"requires", requirementsJson(needs)},
-                                             {"settings", settingsToJson(settings)},
-                                             {"memory", memoryJson(memory)},
-                                             {"analysis", analysisJson(analysis)},
-                                             {"advice", adviceJson(advice)}};
+        nlohmann::ordered_json json = {{"version", LRSM_VERSION},
+                                       {"scene", sceneJson(scene, hashScene(scene))},
+                                       {"requires", requirementsJson(needs)},
+                                       {"settings", settingsToJson(settings)},
+                                       {"memory", memoryJson(memory)},
+                                       {"analysis", analysisJson(analysis)},
+                                       {"advice", adviceJson(advice)}};
+        if (options.sparse) json["sparse"] = sparseJson(countSparse(scene, settings.voxel));
         std::cout << jsonText(json);
         return 0;
     }
@@ -139,6 +173,7 @@ int runInfo(const InfoArguments& options)
     printAdvice(std::cout, advice);
     std::cout << "memory of a frame with these settings, in MB of 10^6 bytes:\n";
     printMemory(std::cout, memory);
+    if (options.sparse) printSparse(std::cout, countSparse(scene, settings.voxel));
     return 0;
 }
 
@@ -153,6 +188,7 @@ Command addInfo(CLI::App& program)
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
     parser->add_flag("--list", options->list, "list the built-in scenes");
+    parser->add_flag("--sparse", options->sparse, "count what an octree would take in place of voxel cone tracing's dense grid");
     return {parser, [options] { return runInfo(*options); }};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conetrace/frame/tiles.h"
 #include "core/base/math.h"
 
 #include <cstddef>
@@ -9,7 +10,6 @@
 /// only apex and direction differ.
 namespace lrsm {
 
-inline constexpr int kTile = 16;                               ///< edge of the square of pixels that is one task
 inline constexpr int kBatchCones = kTile * kTile;              ///< cones that a batch holds at most
 inline constexpr int kWidestLanes = 16;                        ///< of any instruction set
 inline constexpr int kBatchRoom = kBatchCones + kWidestLanes;  ///< lists are written a vector at a time

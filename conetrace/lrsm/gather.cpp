@@ -1,10 +1,10 @@
 #include "conetrace/lrsm/gather.h"
 
+#include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
 #include "conetrace/lrsm/march_slab_batch.h"
 #include "conetrace/lrsm/memory.h"
-#include "core/base/parallel.h"
 #include "voxel/sample_opacity.h"
 
 #include <algorithm>
@@ -13,8 +13,6 @@
 
 namespace lrsm {
 namespace {
-
-constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
 
 /// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
 struct ResultRecorder : NoRecorder {
@@ -55,43 +53,27 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
-    const int xEnd = std::min(gbuffer.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer.height, (tileY + 1) * kTile);
-    for (int y = tileY * kTile; y < yEnd; ++y) {
-        for (int x = tileX * kTile; x < xEnd; ++x) {
-            const std::size_t pixel = out.irradiance.index(x, y);
-            if (!gbuffer.covered(pixel)) continue;
-            const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
-            ResultRecorder recorder = to.diffuseAt(pixel);
-            const PixelGather diffuse = gatherDiffuse<Estimator::paper>(world, sampler, plan, receiver, scratch, counts, recorder);
-            out.irradiance.texels[pixel] = diffuse.irradiance;
-            out.opacity.texels[pixel] = diffuse.opacity;
-            if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) continue;
-            const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
-            recorder = to.specularAt(pixel);
-            out.specular.texels[pixel] =
-                gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
-        }
-    }
-}
-
-/// All tiles, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts).
-template <class StartTask>
-void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const StartTask& startTask)
-{
-    const int tilesX = (gbuffer.width + kTile - 1) / kTile, tilesY = (gbuffer.height + kTile - 1) / kTile;
-    std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
-    parallelFor(counts.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-        auto visit = startTask();
-        for (std::size_t tile = begin; tile < end; ++tile) visit(static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, counts[tile]);
+    forPixels(gbuffer.width, gbuffer.height, tileX, tileY, [&](int x, int y) {
+        const std::size_t pixel = out.irradiance.index(x, y);
+        if (!gbuffer.covered(pixel)) return;
+        const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
+        ResultRecorder recorder = to.diffuseAt(pixel);
+        const PixelGather diffuse = gatherDiffuse<Estimator::paper>(world, sampler, plan, receiver, scratch, counts, recorder);
+        out.irradiance.texels[pixel] = diffuse.irradiance;
+        out.opacity.texels[pixel] = diffuse.opacity;
+        if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
+        const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
+        recorder = to.specularAt(pixel);
+        out.specular.texels[pixel] =
+            gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
     });
-    for (const ConeCounts& tile : counts) out.counts += tile;
 }
 
 /// `paper`, Algorithm 1 as printed: one cone at a time.
 void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
-        forTiles(gbuffer, out, [&] {
+        out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
             return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
         });
     });
@@ -118,14 +100,12 @@ class TileBatch {
     {
         pixels_.clear();
         receivers_.clear();
-        const int xEnd = std::min(gbuffer_.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer_.height, (tileY + 1) * kTile);
-        for (int y = tileY * kTile; y < yEnd; ++y)
-            for (int x = tileX * kTile; x < xEnd; ++x) {
-                const std::size_t pixel = gbuffer_.position.index(x, y);
-                if (!gbuffer_.covered(pixel)) continue;
-                pixels_.push_back(pixel);
-                receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
-            }
+        forPixels(gbuffer_.width, gbuffer_.height, tileX, tileY, [&](int x, int y) {
+            const std::size_t pixel = gbuffer_.position.index(x, y);
+            if (!gbuffer_.covered(pixel)) return;
+            pixels_.push_back(pixel);
+            receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
+        });
     }
 
     void gatherDiffuse(const GatherOutput& to, ConeCounts& counts)
@@ -219,7 +199,7 @@ void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 {
     const BatchWorld batchWorld(world);
     const MarchBatch march = marchSlabBatch(lanes);
-    forTiles(gbuffer, out, [&] {
+    out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
         return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
             batch.gather(camera, tileX, tileY, out, counts);
         };

@@ -1,17 +1,11 @@
 #pragma once
 
-#include "conetrace/frame/gather_plan.h"
-#include "conetrace/frame/receiver.h"
+#include "conetrace/frame/pixel_cones.h"
 #include "conetrace/lrsm/march_paper.h"
 #include "conetrace/lrsm/march_slab.h"
 
 /// How one pixel is gathered; shared by the picture and by --pixel, which only record differently.
 namespace lrsm {
-
-struct PixelGather {
-    Vec3 irradiance{0.0f};
-    float opacity = 0.0f;
-};
 
 /// The estimator seam: all else is common. A third estimator is one more case.
 template <Estimator estimator, class Sampler, class Recorder>
@@ -27,58 +21,25 @@ ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeR
     return cone;
 }
 
-inline ConeRay coneRay(const Receiver& receiver, const Vec3& direction)
-{
-    return {.originWorld = receiver.originWorld, .originVoxels = receiver.originVoxels, .direction = direction, .receiverNormal = receiver.geometricNormal};
-}
-
-/// A recorder is told what it has functions for: cone() before a cone, result() after it; with `active` also its steps and layers.
-
-/// Diffuse cones of one pixel: E = pi * sum w_c I_c, averaged over setsPerPixel rotations.
+/// Diffuse cones of one pixel. With `active` a recorder is told the steps and layers too.
 template <Estimator estimator, class Sampler, class Recorder>
 PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, MarchScratch& scratch,
                           ConeCounts& counts, Recorder& recorder)
 {
-    const Mat3 basis = basisFromNormal(receiver.normal);
-    const int sets = world.settings.set.setsPerPixel;
-    PixelGather sum;
-    for (int s = 0; s < sets; ++s) {
-        const auto directions = plan.cones.rotation((receiver.rotation + s * kRotations / sets) % kRotations);
-        for (std::size_t r = 0; r < plan.cones.rings.size(); ++r) {
-            const ConeRing& ring = plan.cones.rings[r];
-            for (int c = ring.first; c < ring.first + ring.count; ++c) {
-                const ConeRay ray = coneRay(receiver, basis * directions[std::size_t(c)]);
-                if constexpr (requires { recorder.cone(ray, ring.weight, ring.tanHalf); }) recorder.cone(ray, ring.weight, ring.tanHalf);
-                const ConeResult cone = marchCone<estimator>(world, sampler, ray, plan.ringSchedules[r], scratch, counts, recorder);
-                if constexpr (requires { recorder.result(cone); }) recorder.result(cone);
-                sum.irradiance += ring.weight * cone.radiance;
-                sum.opacity += ring.weight * cone.opacity;
-            }
-        }
-    }
-    const float perSet = 1.0f / static_cast<float>(sets);
-    return {sum.irradiance * (kPi * perSet), sum.opacity * perSet};
+    const auto march = [&](const ConeRay& ray, const MarchSchedule& schedule) {
+        return marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);
+    };
+    return gatherDiffuse(plan, world.settings.set.setsPerPixel, receiver, march, recorder);
 }
 
-/// Towards what a mirror at the receiver would show; as long as toEye.
-inline Vec3 mirrorDirection(const Receiver& receiver, const Vec3& toEye)
-{
-    return 2.0f * glm::dot(receiver.normal, toEye) * receiver.normal - toEye;
-}
-
-/// The specular cone about the mirror direction; below the surface it sees nothing.
 template <Estimator estimator, class Sampler, class Recorder>
 Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness,
                     MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
-    const Vec3 mirror = mirrorDirection(receiver, toEye);
-    if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
-    const MarchSchedule& schedule = plan.specularSchedule(roughness);
-    const ConeRay ray = coneRay(receiver, glm::normalize(mirror));
-    if constexpr (requires { recorder.cone(ray, 1.0f, schedule.tanHalf); }) recorder.cone(ray, 1.0f, schedule.tanHalf);
-    const ConeResult cone = marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);
-    if constexpr (requires { recorder.result(cone); }) recorder.result(cone);
-    return cone.radiance;
+    const auto march = [&](const ConeRay& ray, const MarchSchedule& schedule) {
+        return marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);
+    };
+    return gatherSpecular(plan, receiver, toEye, roughness, march, recorder);
 }
 
 }  // namespace lrsm

@@ -17,6 +17,7 @@ enum class Extent { reach, scene };  ///< what a grid or a map is fitted to: wha
 
 enum class Voxelization { conservative, thin, raster };
 enum class MipFilter { mean, coverage, max };
+enum class VoxelWeight { area, count };             ///< of a triangle in its voxel's attributes: its area there, or 1
 enum class OpacityAxes { isotropic, directional };  ///< one opacity a voxel, or an area density along each axis
 
 enum class TextureFilter { trilinear, bilinear };  ///< by mips and the pixel's or RSM texel's own size; or the base level alone
@@ -33,6 +34,7 @@ struct VoxelSettings {
     OpacityAxes axes = OpacityAxes::directional;
     Storage storage = Storage::gpu;
     Extent extent = Extent::reach;
+    VoxelWeight surfaceWeight = VoxelWeight::area;
     bool operator==(const VoxelSettings&) const = default;
 };
 
@@ -155,7 +157,24 @@ struct ConeSettings {
     bool operator==(const ConeSettings&) const = default;
 };
 
-enum class Method { lrsm };  ///< of indirect light
+enum class Injection { rsm, voxel };                ///< a voxel's light: the mean over its RSM texels, or its own surface lit
+enum class InjectionWeight { mean, area };          ///< `rsm`: as it is, or times the part of the voxel's surface that the texels cover
+enum class DirectionWeights { absolute, squared };  ///< of the three directional textures: |d_k| or d_k^2
+enum class StepOpacity { step, none };              ///< opacity of a texel's width scaled to the step's length, or taken as it is
+
+/// Voxel cone tracing.
+struct VctSettings {
+    Storage storage = Storage::gpu;
+    HalfRounding halfRounding = HalfRounding::d3d;
+    Injection injection = Injection::rsm;
+    InjectionWeight injectionWeight = InjectionWeight::mean;
+    float facing = 0.1f;  ///< what faces a cone's way by more than this cosine sends nothing, [0, 2]; 2: everything sends
+    DirectionWeights weights = DirectionWeights::absolute;
+    StepOpacity opacity = StepOpacity::step;
+    bool operator==(const VctSettings&) const = default;
+};
+
+enum class Method { lrsm, vct };  ///< of indirect light
 
 struct ForceSettings {
     bool everything = false;  ///< run every pass and branch that the scene analysis would leave out (tests that the analysis is safe)
@@ -170,6 +189,7 @@ struct Settings {
     LayerSettings layers;
     DirectSettings direct;
     ConeSettings cones;
+    VctSettings vct;
     ForceSettings force;
     bool operator==(const Settings&) const = default;
 };

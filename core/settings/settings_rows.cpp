@@ -18,6 +18,7 @@ struct Places {
     static auto of(auto& s, MarchSettings*) { return std::pair(&s.cones.march, "cones"); }
     static auto of(auto& s, LrsmGatherSettings*) { return std::pair(&s.cones.gather, "cones"); }
     static auto of(auto& s, SpecularSettings*) { return std::pair(&s.cones.specular, "cones"); }
+    static auto of(auto& s, VctSettings*) { return std::pair(&s.vct, "vct"); }
     static auto of(auto& s, ForceSettings*) { return std::pair(&s.force, "force"); }
 };
 
@@ -114,17 +115,18 @@ using Set = ConeSetSettings;
 using March = MarchSettings;
 using Gather = LrsmGatherSettings;
 using Specular = SpecularSettings;
+using Vct = VctSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
 /// In the order of the enumeration Method.
 SettingRow methodRow()
 {
-    const Names names = {"lrsm"};
+    const Names names = {"lrsm", "vct"};
     return {.key = "method",
             .stage = "method",
             .unit = "",
-            .meaning = "of indirect light: layered reflective shadow maps",
+            .meaning = "of indirect light: layered reflective shadow maps, or voxel cone tracing",
             .source = "paper: lrsm",
             .kind = SettingKind::choice,
             .range = {0, static_cast<float>(names.size() - 1)},
@@ -152,6 +154,9 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&V::extent>(
         {"voxel_extent", "", "grid over what camera and lights reach, where that is far less than the scene; or over all of it", "ours; paper: scene"},
         extent));
+
+    rows.push_back(
+        choice<&V::surfaceWeight>({"vox_weight", "", "of a triangle in the albedo and normal of its voxel: its area there, or 1", "ours"}, {"area", "count"}));
 
     rows.push_back(
         whole<&R::resolution>({"rsm_resolution", "texels", "texels along an edge of the reflective shadow map", "paper Table 2: 1024"}, powersOfTwo(2, 8192)));
@@ -207,7 +212,7 @@ void addConeRows(std::vector<SettingRow>& rows)
 
     rows.push_back(choice<&March::opacity>({"opacity", "", "mip value as opacity, or as density along the step", "paper: none"}, {"none", "density"}));
     rows.push_back(real<&March::densityK>({"density_k", "", "estimator paper: optical depth of a wall one voxel thick", "ours"}, above(0, 1000)));
-    rows.push_back(choice<&March::transmittance>({"transmittance", "", "estimator slab: coverage multiplies (exponential) or adds (linear)", "ours"},
+    rows.push_back(choice<&March::transmittance>({"transmittance", "", "slab, vct: coverage multiplies (exponential) or adds (linear)", "ours"},
                                                  {"exponential", "linear"}));
     rows.push_back(real<&March::voxelLevelBias>({"voxel_level_bias", "mip levels", "added to log2(diameter in voxels)", "paper: 0"}, {-16, 16}));
     rows.push_back(real<&Gather::emitterDelayTaps>(
@@ -238,6 +243,18 @@ void addLookupRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&Specular::aperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
     rows.push_back(real<&Specular::apertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
 
+    rows.push_back(choice<&Vct::storage>({"vct_storage", "", "radiance volumes in half or in float32", "paper Sec. 6: gpu"}, {"gpu", "float32"}));
+    rows.push_back(choice<&Vct::halfRounding>({"vct_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
+    rows.push_back(choice<&Vct::injection>({"vct_injection", "", "a voxel's light: the mean over its RSM texels, or its own surface lit", "[CNS*11]: rsm"},
+                                           {"rsm", "voxel"}));
+    rows.push_back(choice<&Vct::injectionWeight>(
+        {"vct_injection_weight", "", "rsm: the mean as it is, or times the part of the voxel's surface that the texels cover", "ours"}, {"mean", "area"}));
+    rows.push_back(
+        real<&Vct::facing>({"vct_facing", "", "a surface that faces a cone's way by more than this cosine is dark to it; 2: none is", "ours"}, {0, 2}));
+    rows.push_back(
+        choice<&Vct::weights>({"vct_weights", "", "of the three directional volumes: |d|, or d^2", "ours; [CNS*11] gives none"}, {"absolute", "squared"}));
+    rows.push_back(choice<&Vct::opacity>({"vct_opacity", "", "a texel's opacity scaled to the step's length, or as it is", "ours"}, {"step", "none"}));
+
     rows.push_back(
         flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));
 }
@@ -245,12 +262,16 @@ void addLookupRows(std::vector<SettingRow>& rows)
 void addShorthands(std::vector<SettingRow>& rows)
 {
     rows.push_back(shorthand(
-        choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage and layer_storage at once", "paper Table 1: gpu"}, {"gpu", "float32"}),
-        [](Settings& settings, double value) { settings.voxel.storage = settings.rsm.storage = settings.layers.storage = static_cast<Storage>(value); }));
-    rows.push_back(
-        shorthand(choice<&L::halfRounding>({"half_rounding", "", "rsm_half_rounding and layer_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
-                                           {"d3d", "nearest_even"}),
-                  [](Settings& settings, double value) { settings.rsm.halfRounding = settings.layers.halfRounding = static_cast<HalfRounding>(value); }));
+        choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage, layer_storage and vct_storage at once", "paper Table 1: gpu"}, {"gpu", "float32"}),
+        [](Settings& settings, double value) {
+            settings.voxel.storage = settings.rsm.storage = settings.layers.storage = settings.vct.storage = static_cast<Storage>(value);
+        }));
+    rows.push_back(shorthand(
+        choice<&L::halfRounding>({"half_rounding", "", "rsm_half_rounding, layer_half_rounding and vct_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
+                                 {"d3d", "nearest_even"}),
+        [](Settings& settings, double value) {
+            settings.rsm.halfRounding = settings.layers.halfRounding = settings.vct.halfRounding = static_cast<HalfRounding>(value);
+        }));
 }
 
 }  // namespace

@@ -166,3 +166,19 @@ TEST_CASE("light projection: behind a spot light nothing is valid, the direction
     CHECK(directionToLight(q, Vec3(0, 1, 0)) == Vec3(0, 1, 0));
     CHECK(directionToLight(q, Vec3(0, 3, 0)) == Vec3(0, 1, 0));
 }
+
+TEST_CASE("light projection: what is projected is found again", "[lrsm][projection]")
+{
+    Random random(9);
+    const LightType type = GENERATE(LightType::directional, LightType::spot, LightType::cubeFace);
+    float largest = 0.0f;
+    for (int i = 0; i < 2000; ++i) {
+        const LightProjection q = fitLightProjection(randomLight(random, type, kAround), kBounds, 512);
+        const Vec3 p = pointIn(random, kBounds);
+        const LightSpacePoint s = projectToLight(q, p);
+        if (!s.valid || std::abs(s.u - 0.5f) > 0.5f || std::abs(s.v - 0.5f) > 0.5f) continue;
+        largest = std::max(largest, glm::length(unprojectFromLight(q, s.u, s.v, s.depth) - p));
+    }
+    CAPTURE(largest);
+    CHECK(largest < kUnprojectionMaxError);
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "conetrace/frame/gather.h"
+#include "conetrace/frame/gather_plan.h"
+#include "voxel/radiance/radiance_volume.h"
+
+/// method = vct: voxel cone tracing (Crassin et al. 2011) in a dense grid, as the LRSM paper compares itself with. Light is injected into the voxels, which
+/// are pre-filtered for six directions of travel, and cones take radiance and occlusion from them. Cone sets, receivers, places of samples and the filter are
+/// those of the other methods; its schedule is the one of `estimator=paper`, one sample a step.
+namespace lrsm {
+
+/// The passes "vct surface" (where the injection reads one), "vct inject" and "vct mips".
+RadianceVolume buildRadiance(const GatherInput& input, PassLog& log);
+
+/// Cones and schedules of VCT: one sample a step, whatever the estimator of other methods.
+GatherPlan planVct(const ConeSettings& settings, const Requirements& needs, int gridResolution);
+
+/// Final gathering of all covered pixels, parallel over tiles; the same bits for any number of threads.
+Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume);
+
+/// The passes above and "vct cones".
+Gathered gatherVct(const GatherInput& input, PassLog& log);
+
+/// The line of the frame's switch.
+GatherMethod vctMethod();
+
+}  // namespace lrsm

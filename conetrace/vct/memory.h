@@ -1,0 +1,11 @@
+#pragma once
+
+#include "conetrace/frame/memory.h"
+
+namespace lrsm {
+
+/// What the radiance volume will hold. On a GPU it is dense, as the paper's: 16 n^3 + 48 (n^3 - 1) / 7 bytes, known beforehand. Here only bricks near surfaces
+/// are held: Unknowns::found voxelizes the scene to count them, `most` takes all, `least` none.
+std::vector<MemoryRow> predictRadiance(const MemoryQuestion& question);
+
+}  // namespace lrsm
