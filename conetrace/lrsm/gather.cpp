@@ -2,9 +2,10 @@
 
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
+#include "conetrace/lrsm/gather_rays.h"
+#include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/march_slab_batch.h"
 #include "conetrace/lrsm/memory.h"
-#include "core/base/parallel.h"
 #include "voxel/sample_opacity.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 
 namespace lrsm {
 namespace {
-
-constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
 
 /// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
 struct ResultRecorder : NoRecorder {
@@ -75,24 +74,11 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
     }
 }
 
-/// All tiles, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts).
-template <class StartTask>
-void forTiles(const GBuffer& gbuffer, const GatherOutput& out, const StartTask& startTask)
-{
-    const int tilesX = (gbuffer.width + kTile - 1) / kTile, tilesY = (gbuffer.height + kTile - 1) / kTile;
-    std::vector<ConeCounts> counts(std::size_t(tilesX) * std::size_t(tilesY));
-    parallelFor(counts.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-        auto visit = startTask();
-        for (std::size_t tile = begin; tile < end; ++tile) visit(static_cast<int>(tile) % tilesX, static_cast<int>(tile) / tilesX, counts[tile]);
-    });
-    for (const ConeCounts& tile : counts) out.counts += tile;
-}
-
 /// `paper`, Algorithm 1 as printed: one cone at a time.
 void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
-        forTiles(gbuffer, out, [&] {
+        forTiles(gbuffer.width, gbuffer.height, out.counts, [&] {
             return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
         });
     });
@@ -176,7 +162,7 @@ class TileBatch {
         for (std::size_t k = 0; k < pixels_.size(); ++k) {
             if (gbuffer_.specularColor.texels[pixels_[k]] == Vec3(0.0f)) continue;
             const Receiver& receiver = receivers_[k];
-            mirrors[k] = mirrorDirection(receiver, glm::normalize(directionToEye(camera, receiver.position)));
+            mirrors[k] = mirrorDirection(receiver.normal, glm::normalize(directionToEye(camera, receiver.position)));
             if (!(glm::dot(mirrors[k], receiver.geometricNormal) > 0.0f)) continue;
             waiting.emplace_back(&plan_.specularSchedule(gbuffer_.roughness.texels[pixels_[k]]), k);
         }
@@ -220,7 +206,7 @@ void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 {
     const BatchWorld batchWorld(world);
     const MarchBatch march = marchSlabBatch(lanes);
-    forTiles(gbuffer, out, [&] {
+    forTiles(gbuffer.width, gbuffer.height, out.counts, [&] {
         return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
             batch.gather(camera, tileX, tileY, out, counts);
         };
@@ -236,8 +222,7 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
     return lrsms;
 }
 
-Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                    const ConeSettings& settings, ConeRecord* record, int lanes)
+Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings, ConeRecord* record)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
@@ -249,7 +234,13 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
         record->diffuse.assign(static_cast<std::size_t>(record->cones) * out.irradiance.texels.size(), Vec4(0.0f));
         record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
     }
+    return out;
+}
 
+Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                    const ConeSettings& settings, ConeRecord* record, int lanes)
+{
+    Gathered out = emptyGathered(gbuffer, needs, settings, record);
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
@@ -265,19 +256,37 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
 Gathered gatherLrsm(const GatherInput& input, PassLog& log)
 {
     const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
-    ConeRecord record;
-    Gathered gathered = log.run("cones", kPicturePass, [&] {
-        return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr,
-                          input.lanes);
-    });
-    log.show("cones", record);
-    gathered.filter4x4 = input.settings.cones.set.filter;
+    const ConeSettings& settings = input.settings.cones;
+    ConeRecord kept;
+    ConeRecord* const record = log.observed() ? &kept : nullptr;
+    Gathered gathered;
+    switch (settings.march.visibility) {
+    case Visibility::cones:
+        gathered = log.run("cones", kPicturePass,
+                           [&] { return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings, record, input.lanes); });
+        break;
+    case Visibility::rays: {
+        const EmbreeScene scene = log.run("bvh", kWorldPass, [&] { return EmbreeScene(input.scene, RayKinds::bounces); });
+        gathered = log.run("rays", kPicturePass, [&] { return traceRays(input.gbuffer, input.camera, scene, lrsms, input.needs, settings, record); });
+        break;
+    }
+    case Visibility::voxelRays:
+        gathered =
+            log.run("rays", kPicturePass, [&] { return traceVoxelRays(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings, record); });
+        break;
+    }
+    log.show("cones", kept);
+    gathered.filter4x4 = settings.set.filter;
     return gathered;
 }
 
-GatherMethod lrsmMethod()
+GatherMethod lrsmMethod(Visibility visibility)
 {
-    return {.reads = {.bits = true, .mips = true}, .gather = gatherLrsm, .explain = explainLrsm, .predict = predictLrsms};
+    GatherMethod method{.reads = {.bits = true, .mips = true}, .gather = gatherLrsm, .explain = explainLrsm, .predict = predictLrsms};
+    if (visibility == Visibility::cones) return method;
+    method.explain = {};
+    if (visibility == Visibility::rays) method.reads = {};
+    return method;
 }
 
 }  // namespace lrsm

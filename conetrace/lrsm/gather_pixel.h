@@ -61,9 +61,9 @@ PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const 
 }
 
 /// Towards what a mirror at the receiver would show; as long as toEye.
-inline Vec3 mirrorDirection(const Receiver& receiver, const Vec3& toEye)
+inline Vec3 mirrorDirection(const Vec3& normal, const Vec3& toEye)
 {
-    return 2.0f * glm::dot(receiver.normal, toEye) * receiver.normal - toEye;
+    return 2.0f * glm::dot(normal, toEye) * normal - toEye;
 }
 
 /// The specular cone about the mirror direction; below the surface it sees nothing.
@@ -71,7 +71,7 @@ template <Estimator estimator, class Sampler, class Recorder>
 Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness,
                     MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
-    const Vec3 mirror = mirrorDirection(receiver, toEye);
+    const Vec3 mirror = mirrorDirection(receiver.normal, toEye);
     if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
     const MarchSchedule& schedule = plan.specularSchedule(roughness);
     const ConeRay ray = coneRay(receiver, glm::normalize(mirror));

@@ -1,4 +1,4 @@
-#include "reference/embree_scene.h"
+#include "bvh/embree_scene.h"
 
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
@@ -9,6 +9,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,16 @@ RTCRay embreeRay(const Ray& ray)
 
 }  // namespace
 
-/// Called for hits on single-sided or alpha-masked geometry only; clears `valid` where the ray goes on. Our rays come one by one.
+struct EmbreeScene::Memory {
+    std::atomic<std::int64_t> bytes{0};
+    static bool count(void* memory, ssize_t bytes, bool /*done*/)
+    {
+        static_cast<Memory*>(memory)->bytes += bytes;
+        return true;
+    }
+};
+
+/// Called for hits on alpha-masked geometry, and on single-sided where fronts and backs matter; clears `valid` where the ray goes on. Our rays come one by one.
 void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* arguments)
 {
     if (arguments->valid[0] != -1) return;
@@ -69,7 +79,7 @@ void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* argume
     if (data.alphaMask && !passesAlphaTest(*data.scene, {data.mesh, hit.primID, hit.u, hit.v})) arguments->valid[0] = 0;
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new GeometryData[scene.meshes.size()])
+EmbreeScene::EmbreeScene(const Scene& scene, RayKinds kinds) : scene_(&scene), data_(new GeometryData[scene.meshes.size()]), memory_(new Memory)
 {
     const Vec3 largest = glm::max(glm::abs(scene.bounds.min), glm::abs(scene.bounds.max));
     floor_ = scene.bounds.empty() ? 0.0f : 0x1p-22f * std::max({largest.x, largest.y, largest.z});
@@ -79,6 +89,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
     const ThreadLimit oneBuilder(1);
     device_.reset(rtcNewDevice("isa=avx2"));
     if (!device_) fail(nullptr, "cannot be started with isa=avx2");
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), &Memory::count, memory_.get());
     embree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(embree_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_MEDIUM);
@@ -86,7 +97,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
         const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-        data_[m] = {&scene, m, !material.doubleSided, material.alphaMask};
+        data_[m] = {&scene, m, kinds == RayKinds::all && !material.doubleSided, material.alphaMask};
 
         RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copies, not shared buffers: Embree reads 16 bytes at the last vertex, beyond the end of ours.
@@ -109,6 +120,12 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
 }
 
 EmbreeScene::~EmbreeScene() = default;
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+
+std::size_t EmbreeScene::bytes() const
+{
+    return static_cast<std::size_t>(memory_->bytes.load());
+}
 
 void EmbreeScene::Release::operator()(RTCDeviceTy* device) const
 {
