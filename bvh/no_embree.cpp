@@ -5,10 +5,8 @@
 /// Where Embree is not built with: a scene cannot be made, so the rest is never called.
 namespace lrsm {
 
-struct EmbreeScene::GeometryData {
-};
-struct EmbreeScene::Memory {
-};
+struct EmbreeScene::GeometryData {};
+struct EmbreeScene::Memory {};
 
 EmbreeScene::EmbreeScene(const Scene& scene, RayKinds /*kinds*/) : scene_(&scene)
 {

@@ -10,9 +10,9 @@ namespace lrsm {
 Image<float> nearnessOf(const GBuffer& gbuffer);
 
 /// `passes` (1..3) a-trous passes after filterIrradiance: tents of 3x3 taps, 4, 8, 16 pixels apart, over pixels of the same surface (same_surface.h). A tap at
-/// distance x weighs max(0, 1 - x nearness / kGradientTolerance) besides, by the larger nearness of the two: the irradiance gradient on a wall is bounded by nearness
-/// (Ward and Heckbert, "Irradiance Gradients", 1992), so open walls are smoothed and corners and contacts keep their shading. A constant field stays constant.
-/// The tolerance is measured: .25 costs the built-in scenes up to 4 % at 320x180.
+/// distance x weighs max(0, 1 - x nearness / kGradientTolerance) besides, by the larger nearness of the two: the irradiance gradient on a wall is bounded by
+/// nearness (Ward and Heckbert, "Irradiance Gradients", 1992), so open walls are smoothed and corners and contacts keep their shading. A constant field stays
+/// constant. The tolerance is measured: .25 costs the built-in scenes up to 4 % at 320x180.
 inline constexpr float kGradientTolerance = 0.125f;
 Image<Vec3> smoothIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int passes);
 

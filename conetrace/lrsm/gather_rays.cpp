@@ -1,12 +1,15 @@
 #include "conetrace/lrsm/gather_rays.h"
 
+#include "conetrace/frame/cone_batch.h"
 #include "conetrace/frame/cones.h"
 #include "conetrace/lrsm/gather_pixel.h"
+#include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/hit_radiance.h"
-#include "core/base/parallel.h"
 #include "voxel/voxel_ray.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 namespace lrsm {
 namespace {
@@ -19,7 +22,9 @@ struct RayLight {
     float unexposed;
 
     RayLight(const std::vector<Lrsm>& lrsms, const ConeSettings& cones)
-        : maps(lrsms.begin(), lrsms.end()), settings(cones), phi(cones.gather.gaussian, cones.gather.gaussianTableSize),
+        : maps(lrsms.begin(), lrsms.end()),
+          settings(cones),
+          phi(cones.gather.gaussian, cones.gather.gaussianTableSize),
           unexposed(lrsms.empty() ? 1.0f : 1.0f / lrsms.front().preExposure)
     {
     }
@@ -68,8 +73,8 @@ struct RayReceiver {
     Mat3 basis{1.0f};
 };
 
-/// The pixels of one tile: all of them for one ray of the set, then for the next, those of one rotation after each other: each ray goes nearly the way of the one
-/// before, through what is in the caches. (Embree's packets of eight such rays took 12 % longer than one after the other.)
+/// The pixels of one tile: all of them for one ray of the set, then for the next, those of one rotation after each other: each ray goes nearly the way of the
+/// one before, through what is in the caches. (Embree's packets of eight such rays took 12 % longer than one after the other.)
 template <class Hits>
 class RayTile {
   public:
@@ -147,9 +152,8 @@ class RayTile {
         ++counts.cones;
         const float t = hits_.distance({.origin = receiver.origin, .direction = direction});
         if (!(t < kInfinity)) return Vec4(0.0f);
-        const LrsmProbe probe{.position = receiver.origin + direction * t,
-                              .direction = direction,
-                              .footprint = std::max(2.0f * t * tanHalf, hits_.leastFootprint())};
+        const LrsmProbe probe{
+            .position = receiver.origin + direction * t, .direction = direction, .footprint = std::max(2.0f * t * tanHalf, hits_.leastFootprint())};
         return Vec4(light_.radiance(probe, counts), 1.0f);
     }
 

@@ -6,11 +6,10 @@
 /// visibility = rays, voxel-rays: the gather that ray-tracing hardware would run. Each cone's axis is a ray; its light is the LRSM's at the first surface met.
 namespace lrsm {
 
-/// As traceCones, of rays through the triangles: E = pi * mean of L over the cones' own directions. The lookup's footprint follows the ray's cone: 2 t tan(half-angle), so
-/// `aperture_scale` is its width. Rays start off the surface by what the scene's floats need, and what lies below the geometric horizon is dark. Opacity is
-/// the share of rays that meet something. The specular cone is a ray too, its
-/// footprint `aperture_scale` of its own cone's.
-/// The same bits for any number of threads; not for every build of Embree, whose hits round differently.
+/// As traceCones, of rays through the triangles: E = pi * mean of L over the cones' own directions. The lookup's footprint follows the ray's cone: 2 t
+/// tan(half-angle), so `aperture_scale` is its width. Rays start off the surface by what the scene's floats need, and what lies below the geometric horizon is
+/// dark. Opacity is the share of rays that meet something. The specular cone is a ray too, its footprint `aperture_scale` of its own cone's. The same bits for
+/// any number of threads; not for every build of Embree, whose hits round differently.
 Gathered traceRays(const GBuffer& gbuffer, const Camera& camera, const EmbreeScene& scene, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                    const ConeSettings& settings, ConeRecord* record = nullptr);
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "conetrace/frame/cone.h"
 #include "conetrace/frame/cone_batch.h"
 #include "conetrace/lrsm/gather.h"
 #include "core/base/parallel.h"
+
+#include <vector>
 
 /// What the gathers by cones and by rays have in common: their output, and the walk over 16x16 tiles.
 namespace lrsm {

@@ -2,6 +2,9 @@
 
 #include "lrsm/sample.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lrsm {
 namespace {
 
