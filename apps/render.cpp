@@ -23,17 +23,16 @@ namespace lrsm {
 namespace {
 
 struct RenderArguments : CommonOptions {
-    std::string output, pixel, exposure = "auto", visibility = "voxel", radiance = "lrsm";
+    std::string output, pixel, exposure = "auto", radiance = "lrsm";
     double maxMemoryMegabytes = 0.0;
     int lanes = 0;
 };
 
-GatherMethod chosenMethod(const RenderArguments& options)
+/// None: that of the settings.
+GatherMethod chosenMethod(const RenderArguments& options, const Settings& settings)
 {
-    if (options.visibility != "voxel" && options.visibility != "exact") throw InputError("--visibility " + options.visibility, "must be voxel or exact");
     if (options.radiance != "lrsm" && options.radiance != "exact") throw InputError("--radiance " + options.radiance, "must be lrsm or exact");
-    return raysMethod({.visibility = options.visibility == "exact" ? Visibility::exact : Visibility::voxel,
-                       .radiance = options.radiance == "exact" ? Radiance::exact : Radiance::lrsm});
+    return options.radiance == "exact" ? exactRadianceMethod(settings.cones.march.visibility) : GatherMethod{};
 }
 
 void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, const std::string& where)
@@ -57,7 +56,7 @@ int runRender(const RenderArguments& options)
     const IVec2 size = chosenSize(options);
     const std::optional<float> exposure = parseExposure(options.exposure);
     if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
-    RenderOptions renderOptions{.width = size.x, .height = size.y, .lanes = options.lanes, .watch = {}, .method = chosenMethod(options)};
+    RenderOptions renderOptions{.width = size.x, .height = size.y, .lanes = options.lanes, .watch = {}, .method = chosenMethod(options, settings)};
     std::optional<IVec2> pixel;
     if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
     std::optional<OutputFolder> folder;
@@ -88,7 +87,6 @@ int runRender(const RenderArguments& options)
                        .sceneHash = hashScene(scene),
                        .memory = predictMemory(memory),
                        .exposureStops = exposure,
-                       .visibility = options.visibility,
                        .radiance = options.radiance};
     addMeasured(record.memory, frame.passes);
     const nlohmann::ordered_json json = frameJson(frame, record);
@@ -117,9 +115,9 @@ Command addRender(CLI::App& program)
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for the results; they appear whole or not at all");
     parser->add_option("--pixel", options->pixel, "x,y: print how this pixel came about, cone by cone, step by step");
-    parser->add_option("--visibility", options->visibility, "voxel, or exact: the diffuse gather by Embree rays, to see what the voxels cost")
-        ->capture_default_str();
-    parser->add_option("--radiance", options->radiance, "lrsm, or exact: the light of what is hit by shadow rays, to see what the LRSM costs")
+    parser
+        ->add_option("--radiance", options->radiance,
+                     "lrsm, or exact: with visibility=rays or voxel-rays the light of what is hit by shadow rays, to see what the LRSM costs")
         ->capture_default_str();
     parser->add_option("--exposure", options->exposure, "stops for the PNGs; auto: from the picture, in quarter stops")->capture_default_str();
     parser->add_option("--lanes", options->lanes, "pixels that the cones' kernel takes at a time; 0: as many as this machine can; the picture is the same")

@@ -3,6 +3,7 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
+#include "conetrace/frame/smooth_irradiance.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/vct/gather.h"
 #include "core/base/errors.h"
@@ -50,10 +51,12 @@ GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& o
 }
 
 /// From gathered light to the picture.
-void finish(Frame& frame, const Camera& camera, Gathered light, PassLog& log)
+void finish(Frame& frame, const Camera& camera, const Settings& settings, Gathered light, PassLog& log)
 {
     frame.irradiance = std::move(light.irradiance);
     if (light.filter4x4) frame.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(frame.irradiance, frame.gbuffer); });
+    const int passes = settings.cones.set.filterPasses;
+    if (passes > 0) frame.irradiance = log.run("smooth", kPicturePass, [&] { return smoothIrradiance(frame.irradiance, frame.gbuffer, passes); });
     frame.combined = log.run("composite", kPicturePass, [&] {
         IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, frame.irradiance, light.specular);
         Image<Vec3> sum = composite(frame.direct, indirect);
@@ -67,7 +70,7 @@ void finish(Frame& frame, const Camera& camera, Gathered light, PassLog& log)
 
 GatherMethod chosenMethod(const Settings& settings, const RenderOptions& options)
 {
-    return options.method.gather ? options.method : methodOf(settings.method);
+    return options.method.gather ? options.method : methodOf(settings);
 }
 
 /// For the progress bar: voxels and their mips, G-buffer, direct, filter, composite; the method's are counted by what it predicts, and its gather.
@@ -79,10 +82,10 @@ std::size_t expectedPasses(const Scene& scene)
 
 }  // namespace
 
-GatherMethod methodOf(Method method)
+GatherMethod methodOf(const Settings& settings)
 {
-    switch (method) {
-    case Method::lrsm: return lrsmMethod();
+    switch (settings.method) {
+    case Method::lrsm: return lrsmMethod(settings.cones.march.visibility);
     case Method::vct: return vctMethod();
     }
     throw InputError("method", "is none of the known");
@@ -122,7 +125,7 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
                                     .opacity = world.opacity,
                                     .lanes = options.lanes},
                                    log);
-    finish(frame, camera, std::move(light), log);
+    finish(frame, camera, settings, std::move(light), log);
     return frame;
 }
 
@@ -143,7 +146,7 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
 std::vector<MemoryRow> predictMemory(const MemoryQuestion& question)
 {
     const Settings& settings = question.settings;
-    const GatherMethod method = methodOf(settings.method);
+    const GatherMethod method = methodOf(settings);
     std::vector<MemoryRow> rows = predictVoxels(settings.voxel, method.reads.bits, method.reads.mips || settings.direct.shadows == Shadows::cone);
     const std::vector<MemoryRow> maps = predictRsms(settings.rsm, question.scene.lights.size());
     rows.insert(rows.end(), maps.begin(), maps.end());

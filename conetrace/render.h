@@ -40,6 +40,6 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
 std::vector<MemoryRow> predictMemory(const MemoryQuestion& question);
 
 /// The one place that knows all methods.
-GatherMethod methodOf(Method method);
+GatherMethod methodOf(const Settings& settings);
 
 }  // namespace lrsm

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bvh/embree_scene.h"
 #include "core/scene/light.h"
-#include "reference/embree_scene.h"
 #include "reference/sobol.h"
 
 #include <optional>

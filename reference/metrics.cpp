@@ -7,6 +7,8 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
+constexpr int kBandReach = 8;  ///< pixels
+
 /// a / b with 0 / 0 = 1.
 double ratio(double a, double b)
 {
@@ -120,6 +122,48 @@ std::vector<RegionMetrics> measureRegions(const Image<Vec3>& reference, const Im
         result.push_back(m);
     }
     return result;
+}
+
+PixelMask flatParts(const Image<Vec3>& normal, const Image<Vec3>& position)
+{
+    constexpr float sameCosine = 0.999f, offPlane = 0.01f;  // of the distance between the two points
+    PixelMask flat(normal.width, normal.height);
+    for (int y = kBandReach; y < normal.height - kBandReach; ++y)
+        for (int x = kBandReach; x < normal.width - kBandReach; ++x) {
+            const Vec3 n = normal.at(x, y), p = position.at(x, y);
+            bool one = n != Vec3(0.0f);
+            for (int dy = -kBandReach; one && dy <= kBandReach; ++dy)
+                for (int dx = -kBandReach; one && dx <= kBandReach; ++dx) {
+                    const Vec3 between = position.at(x + dx, y + dy) - p;
+                    one = glm::dot(normal.at(x + dx, y + dy), n) > sameCosine && std::abs(glm::dot(between, n)) <= offPlane * glm::length(between);
+                }
+            flat.at(x, y) = one ? 1 : 0;
+        }
+    return flat;
+}
+
+std::optional<double> bandError(const Image<Vec3>& reference, const Image<Vec3>& test, const PixelMask& flat)
+{
+    double squares = 0.0, light = 0.0;
+    std::uint64_t pixels = 0;
+    const auto boxMean = [&](int x, int y, int reach) {
+        DVec3 total(0.0);
+        for (int dy = -reach; dy <= reach; ++dy)
+            for (int dx = -reach; dx <= reach; ++dx) total += DVec3(test.at(x + dx, y + dy)) - DVec3(reference.at(x + dx, y + dy));
+        return total / double((2 * reach + 1) * (2 * reach + 1));
+    };
+    for (int y = kBandReach; y < flat.height - kBandReach; ++y)
+        for (int x = kBandReach; x < flat.width - kBandReach; ++x) {
+            if (!flat.at(x, y)) continue;
+            const DVec3 band = boxMean(x, y, 1) - boxMean(x, y, kBandReach);
+            if (!std::isfinite(sum(band))) continue;
+            squares += glm::dot(band, band);
+            light += sum(DVec3(reference.at(x, y)));
+            ++pixels;
+        }
+    if (pixels == 0 || light == 0.0) return {};
+    const double count = 3.0 * double(pixels);
+    return std::sqrt(squares / count) / (light / count);
 }
 
 double psnr(const Image<Vec3>& reference, const Image<Vec3>& test)

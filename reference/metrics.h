@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// How far a picture is from the reference, in numbers. r: reference, t: test; sums run over the pixels that count and all three channels.
@@ -42,6 +43,13 @@ struct RegionMetrics {
 };
 std::vector<RegionMetrics> measureRegions(const Image<Vec3>& reference, const Image<Vec3>& test, const std::vector<Region>& regions,
                                           const PixelMask& valid = {});
+
+/// Pixels in the middle of 17 x 17 that show one plane: 1 there. Unit normals and positions, both 0 where nothing was drawn.
+PixelMask flatParts(const Image<Vec3>& normal, const Image<Vec3>& position);
+
+/// Stripes and blotches: the error's part between 3 and 17 pixels wide on flat parts, where the true light has next to none: rms of (mean over 3 x 3 - mean
+/// over 17 x 17) of t - r over those pixels, over the mean of r there; nothing where there are none. The truth's noise is in it.
+std::optional<double> bandError(const Image<Vec3>& reference, const Image<Vec3>& test, const PixelMask& flat);
 
 /// Peak signal-to-noise ratio in dB of pictures as shown: values in [0, 1], peak 1. Infinite for equal pictures.
 double psnr(const Image<Vec3>& referenceShown, const Image<Vec3>& testShown);

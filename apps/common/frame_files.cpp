@@ -82,7 +82,6 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
             {"pre_exposure", preExposureOf(record.scene)},
             {"preset", record.preset},
             {"settings", settingsToJson(record.settings)},
-            {"visibility", record.visibility},
             {"radiance", record.radiance},
             {"scene", sceneJson(record.scene, record.sceneHash)},
             {"camera", cameraJson(record.camera, Angle::degrees, record.scene.origin)},

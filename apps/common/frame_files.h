@@ -20,7 +20,7 @@ struct FrameRecord {
     std::string sceneHash;
     std::vector<MemoryRow> memory;
     std::optional<float> exposureStops;  ///< of the PNGs; nothing: automatic
-    std::string visibility, radiance;    ///< of the diffuse gather: "voxel" or "exact", "lrsm" or "exact"
+    std::string radiance;                ///< of what the diffuse gather meets: "lrsm" or "exact"
 };
 
 nlohmann::ordered_json frameJson(const Frame& frame, const FrameRecord& record);

@@ -120,6 +120,15 @@ PixelMask seenPixels(const Side& test, const Side& reference)
     return seen;
 }
 
+/// Where flat surfaces show, as the first side that has normals and positions says; empty when none has.
+PixelMask flatPixels(const Side& test, const Side& reference)
+{
+    for (const Side* side : {&reference, &test})
+        if (side->image.find("normal") && side->image.find("position"))
+            return flatParts(rgbLayer(side->image, "normal", side->path), rgbLayer(side->image, "position", side->path));
+    return {};
+}
+
 /// Sum of the variances that the two sides store; nothing when the reference stores none.
 std::optional<Image<Vec3>> varianceOf(const std::string& layer, const Side& test, const Side& reference)
 {
@@ -184,6 +193,7 @@ void printComparison(const LayerComparison& c)
     std::printf("%s: energy %.4f (R %.4f G %.4f B %.4f)  RMSE/mean %.4f  MAE/mean %.4f  relMSE %.4g  PSNR %.2f dB  SSIM %.4f  FLIP %.4f",
                 c.layer.empty() ? "RGB" : c.layer.c_str(), m.energyRatio, m.channelRatio[0], m.channelRatio[1], m.channelRatio[2], m.rmse, m.mae, m.relMse,
                 c.psnr, c.ssim, c.flip.mean);
+    if (c.band) std::printf("  band %.4f", *c.band);
     if (c.hdrFlip) std::printf("  HDR-FLIP %.4f", c.hdrFlip->mean);
     std::printf("  (%llu pixels)\n", static_cast<unsigned long long>(m.pixels));
     if (c.pixelZ)
@@ -252,9 +262,11 @@ int runCompare(const CompareArguments& options)
                  {"pixels_per_degree", settings.pixelsPerDegree},
                  {"layers", Json::array()},
                  {"failures", Json::array()}};
+    const PixelMask flat = flatPixels(test, reference);
     for (const std::string& layer : chosenLayers(options, test, reference)) {
-        comparisons.push_back(compareLayer(layer, rgbLayer(reference.image, layer, reference.path), rgbLayer(test.image, layer, test.path),
-                                           varianceOf(layer, test, reference), seen, settings));
+        const Image<Vec3> referencePicture = rgbLayer(reference.image, layer, reference.path), testPicture = rgbLayer(test.image, layer, test.path);
+        comparisons.push_back(compareLayer(layer, referencePicture, testPicture, varianceOf(layer, test, reference), seen, settings));
+        if (!flat.empty()) comparisons.back().band = bandError(referencePicture, testPicture, flat);
         json["layers"].push_back(comparisonJson(comparisons.back()));
         for (const std::string& line : failures(gates, comparisons.back(), options.allowNan)) json["failures"].push_back(line);
     }

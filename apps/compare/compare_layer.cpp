@@ -137,6 +137,8 @@ const std::vector<MetricInfo>& metricInfos()
         {"zrms", "root mean square of z over pixels (reference with variance)", [](const C& c) { return c.pixelZ ? Value(c.pixelZ->rms) : Value(); }},
         {"zmax", "largest |z| of a pixel", [](const C& c) { return c.pixelZ ? Value(c.pixelZ->largest) : Value(); }},
         {"block_zrms", "root mean square of z over blocks of 8 x 8 pixels", [](const C& c) { return c.blockZ ? Value(c.blockZ->rms) : Value(); }},
+        {"band", "stripes and blotches on flat parts: RMS of the error's 3 x 3 mean less its 17 x 17 mean, over the mean there",
+         [](const C& c) { return c.band; }},
         {"nan", "pixels with NaN or infinity", [](const C& c) -> Value { return double(c.metrics.notFiniteTest + c.metrics.notFiniteReference); }},
     };
     return all;
@@ -165,6 +167,7 @@ Json comparisonJson(const LayerComparison& c)
         json["hdr_flip"] = poolJson(*c.hdrFlip);
         json["hdr_flip"]["exposures"] = {{"start", c.flipExposures.start}, {"stop", c.flipExposures.stop}, {"count", c.flipExposures.count}};
     }
+    if (c.band) json["band_over_mean"] = *c.band;
     if (c.pixelZ) json["z_pixels"] = zJson(*c.pixelZ);
     if (c.blockZ) json["z_blocks"] = zJson(*c.blockZ);
     json["regions"] = Json::array();

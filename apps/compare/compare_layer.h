@@ -31,6 +31,7 @@ struct LayerComparison {
     FlipPool flip;
     std::optional<FlipPool> hdrFlip;
     FlipExposures flipExposures;
+    std::optional<double> band;           ///< bandError, when a side says what is flat
     std::optional<ZTest> pixelZ, blockZ;  ///< when the reference stores variances; blocks of 8 x 8 pixels
 
     Image<Vec3> referenceShown, testShown;  ///< linear, exposed, not clipped

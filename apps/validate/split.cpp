@@ -1,12 +1,12 @@
 #include "apps/validate/split.h"
 
-#include "apps/validate/hit_radiance.h"
-#include "apps/validate/voxel_ray.h"
+#include "bvh/embree_scene.h"
 #include "conetrace/frame/cones.h"
 #include "conetrace/lrsm/gather.h"
+#include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "reference/embree_scene.h"
 #include "reference/integrator.h"
+#include "voxel/voxel_ray.h"
 
 namespace lrsm {
 namespace {
@@ -37,13 +37,11 @@ std::vector<GatherDirection> gatherDirections(int strata)
 /// Everything that a ray reads.
 struct SplitWorld {
     const OpacityPyramid& opacity;
-    const std::vector<Lrsm>& lrsms;
     const EmbreeScene& embree;
     const ConeSettings& cones;
-    SplitSettings split;
+    Visibility visibility;
     std::vector<LightSampler> lights;
     std::vector<GatherDirection> directions;
-    NormalCdf phi;
 };
 
 struct PixelLight {
@@ -63,20 +61,10 @@ Vec3 exactRadiance(Tracer& tracer, const Ray& ray, bool& hit)
 }
 
 /// The radiance of the first surface along an exact ray.
-Arriving alongExactRay(const SplitWorld& world, Tracer& tracer, const Surface& surface, const Vec3& direction)
+Arriving alongExactRay(Tracer& tracer, const Surface& surface, const Vec3& direction)
 {
     Arriving arriving;
-    const Ray ray = rayFrom(tracer, surface, direction, RayKind::bounce);
-    if (world.split.radiance == Radiance::exact) {
-        arriving.radiance = exactRadiance(tracer, ray, arriving.hit);
-        return arriving;
-    }
-    const std::optional<RayHit> hit = tracer.closestHit(ray);
-    if (!hit) return arriving;
-
-    arriving.hit = true;
-    const LrsmProbe probe{ray.origin + direction * hit->t, direction, world.opacity.base.grid.voxelSize};
-    for (const Lrsm& lrsm : world.lrsms) arriving.radiance += lrsmRadiance(lrsm, probe, world.cones, world.phi);
+    arriving.radiance = exactRadiance(tracer, rayFrom(tracer, surface, direction, RayKind::bounce), arriving.hit);
     return arriving;
 }
 
@@ -103,8 +91,7 @@ PixelLight gatherPixel(const SplitWorld& world, Tracer& tracer, const Surface& s
         const Vec3 direction = basis * sample.local;
         Arriving arriving{Vec3(0.0f), true};  // below the horizon: the surface itself is in the way
         if (glm::dot(surface.geometricNormal, direction) > 0.0f)
-            arriving = world.split.visibility == Visibility::exact ? alongExactRay(world, tracer, surface, direction)
-                                                                   : alongVoxelRay(world, tracer, surface, direction);
+            arriving = world.visibility == Visibility::rays ? alongExactRay(tracer, surface, direction) : alongVoxelRay(world, tracer, surface, direction);
         sum.irradiance += (kPi * sample.weight) * arriving.radiance;
         sum.opacity += arriving.hit ? sample.weight : 0.0f;
     }
@@ -132,21 +119,15 @@ Gathered gatherRays(const GBuffer& gbuffer, const SplitWorld& world)
     return gathered;
 }
 
-Gathered gatherByRays(const GatherInput& input, const SplitSettings& split, PassLog& log)
+Gathered gatherByRays(const GatherInput& input, Visibility visibility, int strata, PassLog& log)
 {
     const ConeSettings& cones = input.settings.cones;
     const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
     Gathered byCones = log.run("cones", kPicturePass, [&] { return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, cones); });
     Gathered byRays = log.run("rays", kPicturePass, [&] {
         const EmbreeScene embree(input.scene);
-        SplitWorld world{.opacity = input.opacity,
-                         .lrsms = lrsms,
-                         .embree = embree,
-                         .cones = cones,
-                         .split = split,
-                         .lights = {},
-                         .directions = gatherDirections(split.strata),
-                         .phi = NormalCdf(cones.gather.gaussian, cones.gather.gaussianTableSize)};
+        SplitWorld world{
+            .opacity = input.opacity, .embree = embree, .cones = cones, .visibility = visibility, .lights = {}, .directions = gatherDirections(strata)};
         for (const Light& light : input.scene.lights) world.lights.emplace_back(light);
         return gatherRays(input.gbuffer, world);
     });
@@ -156,11 +137,11 @@ Gathered gatherByRays(const GatherInput& input, const SplitSettings& split, Pass
 
 }  // namespace
 
-GatherMethod raysMethod(const SplitSettings& split)
+GatherMethod exactRadianceMethod(Visibility visibility, int strata)
 {
-    if (split.visibility == Visibility::voxel && split.radiance == Radiance::lrsm) return {};
+    if (visibility == Visibility::cones) throw InputError("--radiance exact", "cones hit no one surface; take visibility=rays or voxel-rays");
     return {.reads = {.bits = true, .mips = true},
-            .gather = [split](const GatherInput& input, PassLog& log) { return gatherByRays(input, split, log); },
+            .gather = [visibility, strata](const GatherInput& input, PassLog& log) { return gatherByRays(input, visibility, strata, log); },
             .explain = {},
             .predict = {}};
 }

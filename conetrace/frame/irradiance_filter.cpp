@@ -1,22 +1,12 @@
 #include "conetrace/frame/irradiance_filter.h"
 
+#include "conetrace/frame/same_surface.h"
 #include "core/base/parallel.h"
 
 namespace lrsm {
 namespace {
 
 constexpr int kReach = 2;
-constexpr float kNormalCosine = 0.9f;
-constexpr float kPlaneSlope = 0.1f;
-
-bool sameSurface(const GBuffer& g, std::size_t a, std::size_t b)
-{
-    if (!g.covered(b) || glm::dot(g.normal.texels[a], g.normal.texels[b]) < kNormalCosine) return false;
-    const Vec3 between = g.position.texels[b] - g.position.texels[a];
-    const float limit = kPlaneSlope * kPlaneSlope * glm::dot(between, between);
-    const float fromA = glm::dot(between, g.geometricNormal.texels[a]), fromB = glm::dot(between, g.geometricNormal.texels[b]);
-    return fromA * fromA <= limit && fromB * fromB <= limit;
-}
 
 Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int x, int y)
 {

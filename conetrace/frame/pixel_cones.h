@@ -52,16 +52,16 @@ PixelGather gatherDiffuse(const GatherPlan& plan, int setsPerPixel, const Receiv
 }
 
 /// Towards what a mirror at the receiver would show; as long as toEye.
-inline Vec3 mirrorDirection(const Receiver& receiver, const Vec3& toEye)
+inline Vec3 mirrorDirection(const Vec3& normal, const Vec3& toEye)
 {
-    return 2.0f * glm::dot(receiver.normal, toEye) * receiver.normal - toEye;
+    return 2.0f * glm::dot(normal, toEye) * normal - toEye;
 }
 
 /// The specular cone about the mirror direction; below the surface it sees nothing.
 template <class March, class Recorder>
 Vec3 gatherSpecular(const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness, const March& march, Recorder& recorder)
 {
-    const Vec3 mirror = mirrorDirection(receiver, toEye);
+    const Vec3 mirror = mirrorDirection(receiver.normal, toEye);
     if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
     const ConeRay ray = coneRay(receiver, glm::normalize(mirror));
     return recordedCone(march, ray, 1.0f, plan.specularSchedule(roughness), recorder).radiance;

@@ -3,6 +3,8 @@
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
+#include "conetrace/lrsm/gather_rays.h"
+#include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/march_slab_batch.h"
 #include "conetrace/lrsm/memory.h"
 #include "voxel/sample_opacity.h"
@@ -155,7 +157,7 @@ class TileBatch {
         for (std::size_t k = 0; k < pixels_.size(); ++k) {
             if (gbuffer_.specularColor.texels[pixels_[k]] == Vec3(0.0f)) continue;
             const Receiver& receiver = receivers_[k];
-            mirrors[k] = mirrorDirection(receiver, glm::normalize(directionToEye(camera, receiver.position)));
+            mirrors[k] = mirrorDirection(receiver.normal, glm::normalize(directionToEye(camera, receiver.position)));
             if (!(glm::dot(mirrors[k], receiver.geometricNormal) > 0.0f)) continue;
             waiting.emplace_back(&plan_.specularSchedule(gbuffer_.roughness.texels[pixels_[k]]), k);
         }
@@ -215,8 +217,7 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
     return lrsms;
 }
 
-Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
-                    const ConeSettings& settings, ConeRecord* record, int lanes)
+Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings, ConeRecord* record)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
@@ -228,7 +229,13 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
         record->diffuse.assign(static_cast<std::size_t>(record->cones) * out.irradiance.texels.size(), Vec4(0.0f));
         record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
     }
+    return out;
+}
 
+Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
+                    const ConeSettings& settings, ConeRecord* record, int lanes)
+{
+    Gathered out = emptyGathered(gbuffer, needs, settings, record);
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
@@ -244,19 +251,37 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
 Gathered gatherLrsm(const GatherInput& input, PassLog& log)
 {
     const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
-    ConeRecord record;
-    Gathered gathered = log.run("cones", kPicturePass, [&] {
-        return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, input.settings.cones, log.observed() ? &record : nullptr,
-                          input.lanes);
-    });
-    log.show("cones", record);
-    gathered.filter4x4 = input.settings.cones.set.filter;
+    const ConeSettings& settings = input.settings.cones;
+    ConeRecord kept;
+    ConeRecord* const record = log.observed() ? &kept : nullptr;
+    Gathered gathered;
+    switch (settings.march.visibility) {
+    case Visibility::cones:
+        gathered = log.run("cones", kPicturePass,
+                           [&] { return traceCones(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings, record, input.lanes); });
+        break;
+    case Visibility::rays: {
+        const EmbreeScene scene = log.run("bvh", kWorldPass, [&] { return EmbreeScene(input.scene, RayKinds::bounces); });
+        gathered = log.run("rays", kPicturePass, [&] { return traceRays(input.gbuffer, input.camera, scene, lrsms, input.needs, settings, record); });
+        break;
+    }
+    case Visibility::voxelRays:
+        gathered =
+            log.run("rays", kPicturePass, [&] { return traceVoxelRays(input.gbuffer, input.camera, input.opacity, lrsms, input.needs, settings, record); });
+        break;
+    }
+    log.show("cones", kept);
+    gathered.filter4x4 = settings.set.filter;
     return gathered;
 }
 
-GatherMethod lrsmMethod()
+GatherMethod lrsmMethod(Visibility visibility)
 {
-    return {.reads = {.bits = true, .mips = true}, .gather = gatherLrsm, .explain = explainLrsm, .predict = predictLrsms};
+    GatherMethod method{.reads = {.bits = true, .mips = true}, .gather = gatherLrsm, .explain = explainLrsm, .predict = predictLrsms};
+    if (visibility == Visibility::cones) return method;
+    method.explain = {};
+    if (visibility == Visibility::rays) method.reads = {};
+    return method;
 }
 
 }  // namespace lrsm

@@ -23,10 +23,10 @@ struct ConeRecord {
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record = nullptr, int lanes = 0);
 
-/// The passes "lrsm 0", ..., "cones". Whoever watches the log is shown the ConeRecord too.
+/// The passes "lrsm 0", ..., then "cones", or "bvh" (rays through triangles) and "rays" (gather_rays.h). Whoever watches the log is shown the ConeRecord too.
 Gathered gatherLrsm(const GatherInput& input, PassLog& log);
 
-/// The line of the frame's switch.
-GatherMethod lrsmMethod();
+/// The line of the frame's switch. Rays through triangles read no voxels.
+GatherMethod lrsmMethod(Visibility visibility);
 
 }  // namespace lrsm

@@ -69,6 +69,7 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     if (result.origin != glm::dvec3(0.0)) view = readViewFile(viewPath, result.origin);
     if (view.camera) result.cameras = {*view.camera};
     if (view.lights) result.lights = std::move(*view.lights);
+    changeMaterials(result, view.materials, viewPath);
     if (view.camera) result.cameras[0].nearPlane = nearPlaneIn(result, result.cameras[0]);
     // What was said about defaults no longer holds where the view replaced them.
     std::erase_if(result.notes,

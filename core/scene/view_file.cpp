@@ -1,7 +1,9 @@
 #include "core/scene/view_file.h"
 
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
+#include "core/base/text.h"
 #include "core/scene/defaults.h"
 #include "core/scene/light.h"
 
@@ -103,13 +105,27 @@ void addLight(const JsonReader& in, const glm::dvec3& origin, View& view)
     view.lights->push_back(light);
 }
 
+MaterialChange readMaterial(const JsonReader& in)
+{
+    in.allowOnly({"name", "roughness", "metallic", "baseColor"});
+    MaterialChange change;
+    change.name = in["name"].text();
+    if (in.has("roughness")) change.roughness = numberOr(0.0f, in, "roughness", 0.0, 1.0);
+    if (in.has("metallic")) change.metallic = numberOr(0.0f, in, "metallic", 0.0, 1.0);
+    if (!in.has("baseColor")) return change;
+    change.baseColor = vectorOf(in["baseColor"]);
+    for (int c = 0; c < 3; ++c)
+        if (!((*change.baseColor)[c] >= 0.0f && (*change.baseColor)[c] <= 1.0f)) in.fail("baseColor", "must be in [0, 1]");
+    return change;
+}
+
 }  // namespace
 
 View parseView(const std::string& text, const std::string& file, const glm::dvec3& origin)
 {
     const JsonReader::Json json = parseJson(text, file);
     const JsonReader in(json, file);
-    in.allowOnly({"scene", "camera", "lights"});
+    in.allowOnly({"scene", "camera", "lights", "materials"});
 
     View view;
     view.scene = textOr("", in, "scene");
@@ -120,7 +136,29 @@ View parseView(const std::string& text, const std::string& file, const glm::dvec
         view.lights.emplace();
         for (const JsonReader& light : in["lights"].items()) addLight(light, origin, view);
     }
+    if (in.has("materials"))
+        for (const JsonReader& material : in["materials"].items()) view.materials.push_back(readMaterial(material));
     return view;
+}
+
+void changeMaterials(Scene& scene, const std::vector<MaterialChange>& changes, const std::string& place)
+{
+    for (const MaterialChange& change : changes) {
+        bool found = false;
+        for (Material& material : scene.materials) {
+            if (material.name != change.name) continue;
+            found = true;
+            // The texture holds roughness and metallic: the one that is not given keeps its factor alone.
+            if (change.roughness || change.metallic) material.metallicRoughnessTexture = {};
+            if (change.roughness) material.roughness = *change.roughness;
+            if (change.metallic) material.metallic = *change.metallic;
+            if (!change.baseColor) continue;
+            material.baseColor = Vec4(*change.baseColor, material.baseColor.a);
+            if (!material.alphaMask) material.baseColorTexture = {};
+        }
+        if (!found)
+            throw InputError(place + ": materials", "the scene has no material \"" + change.name + "\"; it has " + joined(scene.materials, &Material::name));
+    }
 }
 
 View readViewFile(const std::string& path, const glm::dvec3& origin)

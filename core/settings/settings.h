@@ -91,6 +91,11 @@ inline bool hasShadowMaps(const DirectSettings& settings)
     return readsDepthMaps(settings) && settings.shadowResolution > 1;
 }
 
+enum class Visibility {
+    cones,     ///< the paper: cones through the voxels
+    rays,      ///< a ray along each cone's axis, through the triangles
+    voxelRays  ///< the same through the bits of level 0; key "voxel-rays"
+};
 enum class Estimator { paper, slab };
 enum class OpacityModel { none, density };
 enum class Backface { cosine, step };
@@ -105,12 +110,14 @@ struct ConeSetSettings {
     float apertureScale = 0.5f;  ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
     bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
+    int filterPasses = 0;  ///< wider passes after it, each twice as wide as the last, 0..3; less where walls are near
     int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
     bool operator==(const ConeSetSettings&) const = default;
 };
 
 /// Where a cone samples, and what the voxels do to it.
 struct MarchSettings {
+    Visibility visibility = Visibility::cones;
     Estimator estimator = Estimator::slab;
     float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
     float startVoxels = 3.0f;           ///< first sample's distance along the cone, base voxels, >= 0

@@ -101,6 +101,17 @@ Settings vctPaper()
     return s;
 }
 
+/// Sixteen rays a pixel through the triangles, each with a narrow lookup: no voxels, but a BVH.
+Settings rays()
+{
+    Settings s;
+    s.cones.march.visibility = Visibility::rays;
+    s.cones.set.count = 16;
+    s.cones.set.apertureScale = 0.0625f;
+    s.cones.set.filterPasses = 1;
+    return s;
+}
+
 struct Preset {
     PresetInfo info;
     Settings (*make)();
@@ -113,6 +124,7 @@ std::vector<Preset> presets()
             {{"balanced", "the default: six cones, 512^3 voxels with directional opacity"}, balanced},
             {{"fine", "16 cones, 512^3 voxels"}, fine},
             {{"accurate", "32 cones, 1024^3 voxels, RSM of 2048^2"}, accurate},
+            {{"rays", "16 rays a pixel through the triangles, light from the LRSM where they hit"}, rays},
             {{"vct", "voxel cone tracing with the default's cones, 256^3 voxels"}, vct},
             {{"vct-paper", "voxel cone tracing as the paper compares itself with, 256^3 voxels"}, vctPaper}};
 }

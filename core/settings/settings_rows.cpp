@@ -191,6 +191,10 @@ void addBuildingRows(std::vector<SettingRow>& rows)
 
 void addConeRows(std::vector<SettingRow>& rows)
 {
+    rows.push_back(choice<&March::visibility>(
+        {"visibility", "", "of the gather: cones through the voxels; or a ray along each cone's axis through the triangles, or through the voxels",
+         "paper: cones"},
+        {"cones", "rays", "voxel-rays"}));
     rows.push_back(choice<&March::estimator>(
         {"estimator", "", "Algorithm 1 and Eq. 1 as printed; or V and N as one term with linear transmittance", "paper: paper"}, {"paper", "slab"}));
     rows.push_back(whole<&Set::count>({"cone_count", "", "diffuse cones a pixel", "paper Sec. 6: 6"}, {1, 256}));
@@ -199,6 +203,8 @@ void addConeRows(std::vector<SettingRow>& rows)
         choice<&Set::rotation>({"rotation", "", "per pixel over 4x4: none; azimuth of the cone set; azimuth and polar angle in strata", "ours; paper: none"},
                                {"none", "azimuth", "strata"}));
     rows.push_back(flag<&Set::filter>({"irradiance_filter", "", "geometry-aware 4x4 filter of the irradiance, for rotation != none", "ours; paper: false"}));
+    rows.push_back(whole<&Set::filterPasses>(
+        {"filter_passes", "", "after it: 3x3 taps 4, 8, 16 pixels apart on the same surface, less where other surfaces are near", "ours; paper: 0"}, {0, 3}));
     rows.push_back(whole<&Set::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
     rows.push_back(real<&March::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));

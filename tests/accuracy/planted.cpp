@@ -22,7 +22,7 @@ Frame renderWithLoss(const Scene& scene, const Camera& camera, Settings settings
     // No step is shorter than this, counted as the delay is in widths of the tap: a sphere's diameter is a tap's width or more.
     if (loss == Loss::transmittance) settings.cones.gather.emitterDelayTaps -= settings.cones.march.step;
 
-    RenderOptions options{.width = width, .height = height, .watch = {.hashPasses = false, .progress = {}, .observe = {}}, .method = methodOf(settings.method)};
+    RenderOptions options{.width = width, .height = height, .watch = {.hashPasses = false, .progress = {}, .observe = {}}, .method = methodOf(settings)};
     options.method.gather = [&](const GatherInput& input, PassLog& log) {
         std::vector<Lrsm> lrsms = buildLrsms(input.rsms, settings.layers, log);
         if (loss == Loss::layer)

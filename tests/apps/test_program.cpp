@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 // Drives the real binary: arguments in; exit code, both streams and files out.
@@ -61,9 +62,11 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box -o out --max-memory 1", "--max-memory 1: this frame needs"},
         {"render cornell-box -o out --max-memory nan", "--max-memory"},
         {"render cornell-box -o out --exposure bright", "--exposure bright"},
-        {"render cornell-box -o out --visibility rays", "--visibility rays: must be voxel or exact"},
+        {"render cornell-box -o out --set visibility=mirrors", "visibility"},
+        {"capture cornell-box -o out --set visibility=rays", "take visibility=cones"},
+        {"render cornell-box -o out --radiance exact", "take visibility=rays or voxel-rays"},
         {"render cornell-box -o out --radiance rsm", "--radiance rsm: must be lrsm or exact"},
-        {"render cornell-box --pixel 1,1 --radiance exact", "--pixel"},
+        {"render cornell-box --pixel 1,1 --set visibility=rays", "--pixel"},
         {"render cornell-box --pixel 1280,0", "--pixel 1280,0"},
         {"render cornell-box --pixel 1", "--pixel 1"},
         {"render cornell-box extra -o out", "extra"},
@@ -156,19 +159,22 @@ TEST_CASE("render: every file and layer is there, frame.json repeats the frame, 
     }
 }
 
-TEST_CASE("render --visibility, --radiance: named in frame.json, by default the ordinary frame to the bit", "[apps][split]")
+TEST_CASE("render --radiance: named in frame.json; rays build no voxels", "[apps][split]")
 {
     const Sandbox box;
-    REQUIRE(box.run("render cornell-box -o plain" + kTiny).code == 0);
-    REQUIRE(box.run("render cornell-box -o same --visibility voxel --radiance lrsm" + kTiny).code == 0);
-    REQUIRE(box.run("render cornell-box -o split --visibility exact --radiance lrsm" + kTiny).code == 0);
-    CHECK(readText(box.here() / "plain/image.exr") == readText(box.here() / "same/image.exr"));
-    CHECK(readText(box.here() / "plain/image.exr") != readText(box.here() / "split/image.exr"));
-    const Json plain = Json::parse(readText(box.here() / "plain/frame.json")), split = Json::parse(readText(box.here() / "split/frame.json"));
-    CHECK(plain["visibility"] == "voxel");
-    CHECK(plain["radiance"] == "lrsm");
-    CHECK(split["visibility"] == "exact");
-    CHECK(split["radiance"] == "lrsm");
+    REQUIRE(box.run("render cornell-box -o rays --set visibility=rays" + kTiny).code == 0);
+    REQUIRE(box.run("render cornell-box -o same --set visibility=rays --radiance lrsm" + kTiny).code == 0);
+    REQUIRE(box.run("render cornell-box -o exact --set visibility=rays --radiance exact" + kTiny).code == 0);
+    CHECK(readText(box.here() / "rays/image.exr") == readText(box.here() / "same/image.exr"));
+    CHECK(readText(box.here() / "rays/image.exr") != readText(box.here() / "exact/image.exr"));
+    const Json rays = Json::parse(readText(box.here() / "rays/frame.json")), exact = Json::parse(readText(box.here() / "exact/frame.json"));
+    CHECK(rays["settings"]["visibility"] == "rays");
+    CHECK(rays["radiance"] == "lrsm");
+    CHECK(exact["radiance"] == "exact");
+    std::set<std::string> passes;
+    for (const Json& pass : rays["passes"]) passes.insert(pass["name"]);
+    CHECK(passes.count("bvh") == 1);
+    CHECK(passes.count("voxelize") == 0);
 }
 
 TEST_CASE("memory: what info predicts is what render measures", "[apps][memory]")

@@ -1,4 +1,4 @@
-#include "reference/coincident.h"
+#include "bvh/coincident.h"
 
 #include "core/scene/shapes.h"
 #include "reference/path_trace.h"

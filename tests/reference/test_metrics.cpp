@@ -192,3 +192,34 @@ TEST_CASE("automatic exposures bring the brightest and the median pixel to 0.85 
     CHECK((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14) == Approx(0.85).epsilon(1e-6));
     CHECK(automaticFlipExposures(Image<Vec3>(4, 4)) == FlipExposures{0, 0, 1});
 }
+
+TEST_CASE("band error: a stripe on a flat part counts, a slope, an offset and what is not flat do not", "[reference][metrics][band]")
+{
+    constexpr int n = 64;
+    Image<Vec3> normal(n, n, Vec3(0, 0, 1)), position(n, n), reference(n, n, Vec3(2)), test = reference;
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) position.at(x, y) = Vec3(x, y, 0);
+    const PixelMask flat = flatParts(normal, position);
+    CHECK(flat.at(8, 8) == 1);
+    CHECK(flat.at(7, 30) == 0);
+    CHECK(flat.at(n - 9, n - 9) == 1);
+
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) test.at(x, y) = Vec3(3.0f + 0.01f * float(x));
+    CHECK(bandError(reference, test, flat).value() == Approx(0.0).margin(1e-6));
+
+    // A wave of 12 pixels: a mean over 2 k + 1 pixels leaves sin((2 k + 1) a) / ((2 k + 1) sin a) of it, a = pi / 12.
+    const double a = 3.14159265358979 / 12, kept = std::sin(3 * a) / (3 * std::sin(a)) - std::sin(17 * a) / (17 * std::sin(a));
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) test.at(x, y) = Vec3(2.0f + 0.2f * float(std::sin(2 * a * x)));
+    CHECK(bandError(reference, test, flat).value() == Approx(0.1 * kept / std::sqrt(2.0)).epsilon(0.01));
+
+    for (int y = 0; y < n; ++y) normal.at(32, y) = Vec3(1, 0, 0);
+    const PixelMask parted = flatParts(normal, position);
+    CHECK(parted.at(24, 30) == 0);
+    CHECK(parted.at(23, 30) == 1);
+    CHECK_FALSE(bandError(reference, test, PixelMask(n, n)).has_value());
+    for (int y = 0; y < n; ++y)
+        for (int x = 40; x < n; ++x) position.at(x, y).z = 5.0f;
+    CHECK(flatParts(normal, position).at(41, 30) == 0);
+}

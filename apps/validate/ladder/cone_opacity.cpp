@@ -1,6 +1,6 @@
 #include "apps/validate/ladder/cone_opacity.h"
 
-#include "apps/validate/voxel_ray.h"
+#include "voxel/voxel_ray.h"
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "apps/validate/split.h"
 
+#include "conetrace/frame/cones.h"
 #include "conetrace/render.h"
 #include "core/base/parallel.h"
 #include "core/scene/builtin_scenes.h"
@@ -23,14 +24,31 @@ Settings smallSettings()
     return s;
 }
 
-Frame renderSplit(const Scene& scene, const Settings& settings, const SplitSettings& split)
+Frame renderWith(const Scene& scene, const Settings& settings, const GatherMethod& method)
 {
     RenderOptions options;
     options.width = kWidth;
     options.height = kHeight;
     options.watch.hashPasses = false;
-    options.method = raysMethod(split);
+    options.method = method;
     return renderFrame(scene, scene.cameras.at(0), settings, options);
+}
+
+/// With the light of what the rays meet by shadow rays.
+Frame renderExact(const Scene& scene, const Settings& settings, Visibility visibility, int strata)
+{
+    return renderWith(scene, settings, exactRadianceMethod(visibility, strata));
+}
+
+/// With the LRSM's light; the same rays, and no filter.
+Frame renderRays(const Scene& scene, Settings settings, Visibility visibility, int strata)
+{
+    settings.cones.march.visibility = visibility;
+    settings.cones.set.count = strata;
+    settings.cones.set.setsPerPixel = kRotations;
+    settings.cones.set.filter = false;
+    settings.cones.set.apertureScale = 0.01f;
+    return renderWith(scene, settings, {});
 }
 
 ReferenceFrame truth(const Scene& scene, std::uint64_t samples)
@@ -61,8 +79,6 @@ double meanOf(const Image<Vec3>& image)
     return sum / double(3 * image.texels.size());
 }
 
-const SplitSettings kExactExact{Visibility::exact, Radiance::exact, 64};
-
 }  // namespace
 
 TEST_CASE("exact x exact is the path tracer's picture: in the mean, pixel by pixel, and in what the rays hit", "[validation][split]")
@@ -70,7 +86,7 @@ TEST_CASE("exact x exact is the path tracer's picture: in the mean, pixel by pix
     const std::string name = GENERATE("cornell-box", "two-rooms", "atrium");
     CAPTURE(name);
     const auto scene = makeBuiltinScene(name);
-    const Frame frame = renderSplit(*scene, smallSettings(), kExactExact);
+    const Frame frame = renderExact(*scene, smallSettings(), Visibility::rays, 64);
     const ReferenceFrame reference = truth(*scene, 1024);
     const PixelMask same = sameSurface(*scene, frame.gbuffer);
     const Metrics metrics = measure(reference.irradiance, frame.irradiance, same);
@@ -98,8 +114,8 @@ TEST_CASE("exact x LRSM keeps the light's place: neither shadowed sides nor wide
     Settings settings = smallSettings();
     settings.voxel.resolution = 256;
     settings.rsm.resolution = 1024;
-    const Frame frame = renderSplit(*scene, settings, {Visibility::exact, Radiance::lrsm, 64});
-    const Metrics metrics = measure(renderSplit(*scene, settings, kExactExact).irradiance, frame.irradiance);
+    const Frame frame = renderRays(*scene, settings, Visibility::rays, 64);
+    const Metrics metrics = measure(renderExact(*scene, settings, Visibility::rays, 64).irradiance, frame.irradiance);
     CHECK(metrics.energyRatio == Approx(1.0).epsilon(0.02));
     CHECK(metrics.rmse < 0.1);
 }
@@ -107,18 +123,16 @@ TEST_CASE("exact x LRSM keeps the light's place: neither shadowed sides nor wide
 TEST_CASE("furnace: all four give the closed form", "[validation][split][furnace]")
 {
     const Scene scene = *makeBuiltinScene("furnace");  // E = 0.5 W/m^2 on the inside of the sphere
-    const auto [visibility, radiance] = GENERATE(table<Visibility, Radiance>({{Visibility::voxel, Radiance::lrsm},
-                                                                              {Visibility::voxel, Radiance::exact},
-                                                                              {Visibility::exact, Radiance::lrsm},
-                                                                              {Visibility::exact, Radiance::exact}}));
+    const Visibility visibility = GENERATE(Visibility::rays, Visibility::voxelRays);
+    const bool exact = GENERATE(true, false);
     Settings settings = smallSettings();
     settings.rsm.resolution = 256;  // six maps
-    const Frame frame = renderSplit(scene, settings, {visibility, radiance, 16});
-    const bool exact = visibility == Visibility::exact && radiance == Radiance::exact;
-    CAPTURE(int(visibility), int(radiance));
-    CHECK(meanOf(frame.irradiance) == Approx(0.5).epsilon(exact ? 0.005 : 0.08));
-    for (const Vec3& e : frame.irradiance.texels) CHECK(double(e.y) == Approx(0.5).epsilon(exact ? 0.01 : 0.2));
-    if (visibility == Visibility::exact)
+    const Frame frame = exact ? renderExact(scene, settings, visibility, 16) : renderRays(scene, settings, visibility, 16);
+    const bool both = visibility == Visibility::rays && exact;
+    CAPTURE(int(visibility), exact);
+    CHECK(meanOf(frame.irradiance) == Approx(0.5).epsilon(both ? 0.005 : 0.08));
+    for (const Vec3& e : frame.irradiance.texels) CHECK(double(e.y) == Approx(0.5).epsilon(both ? 0.01 : 0.2));
+    if (visibility == Visibility::rays)
         for (const float opacity : frame.opacity.texels) REQUIRE(opacity == Approx(1.0f));
 }
 
@@ -131,23 +145,22 @@ TEST_CASE("each half stands alone: the LRSM's radiance does not depend on the vo
     hollow.voxel.mode = Voxelization::raster;
     hollow.voxel.mipFilter = MipFilter::max;
     hollow.cones.march.startVoxels = 6.0f;
-    const SplitSettings exactLrsm{Visibility::exact, Radiance::lrsm, 8}, voxelExact{Visibility::voxel, Radiance::exact, 8};
-    CHECK(renderSplit(*scene, settings, exactLrsm).irradiance.texels == renderSplit(*scene, hollow, exactLrsm).irradiance.texels);
+    CHECK(renderRays(*scene, settings, Visibility::rays, 8).irradiance.texels == renderRays(*scene, hollow, Visibility::rays, 8).irradiance.texels);
 
     Settings coarse = settings;
     coarse.rsm.resolution = 64;
     coarse.layers.depthLayers = 1;
-    CHECK(renderSplit(*scene, settings, voxelExact).irradiance.texels == renderSplit(*scene, coarse, voxelExact).irradiance.texels);
-    CHECK(renderSplit(*scene, settings, voxelExact).irradiance.texels != renderSplit(*scene, hollow, voxelExact).irradiance.texels);
-    CHECK(renderSplit(*scene, settings, exactLrsm).irradiance.texels != renderSplit(*scene, coarse, exactLrsm).irradiance.texels);
+    const auto voxelExact = [&](const Settings& s) { return renderExact(*scene, s, Visibility::voxelRays, 8).irradiance.texels; };
+    CHECK(voxelExact(settings) == voxelExact(coarse));
+    CHECK(voxelExact(settings) != voxelExact(hollow));
+    CHECK(renderRays(*scene, settings, Visibility::rays, 8).irradiance.texels != renderRays(*scene, coarse, Visibility::rays, 8).irradiance.texels);
 }
 
 TEST_CASE("diffuse and combined layers follow the split, specular and direct stay", "[validation][split]")
 {
     const auto scene = makeBuiltinScene("cornell-glossy");
     const Settings settings = smallSettings();
-    const Frame shipped = renderSplit(*scene, settings, {Visibility::voxel, Radiance::lrsm, 8}),
-                exact = renderSplit(*scene, settings, {Visibility::exact, Radiance::exact, 8});
+    const Frame shipped = renderWith(*scene, settings, {}), exact = renderExact(*scene, settings, Visibility::rays, 8);
     CHECK(shipped.direct.texels == exact.direct.texels);
     CHECK(shipped.indirectSpecular.texels == exact.indirectSpecular.texels);
     CHECK(shipped.irradiance.texels != exact.irradiance.texels);
@@ -162,11 +175,11 @@ TEST_CASE("diffuse and combined layers follow the split, specular and direct sta
 TEST_CASE("split: the same bits with 1 and 2 threads", "[validation][split][determinism]")
 {
     const auto scene = makeBuiltinScene("atrium");
-    const SplitSettings split = GENERATE(SplitSettings{Visibility::voxel, Radiance::exact, 8}, SplitSettings{Visibility::exact, Radiance::lrsm, 8});
+    const bool exact = GENERATE(true, false);
     std::vector<Vec3> first;
     for (const int threads : {1, 2}) {
         const ThreadLimit limit(threads);
-        const Frame frame = renderSplit(*scene, smallSettings(), split);
+        const Frame frame = exact ? renderExact(*scene, smallSettings(), Visibility::voxelRays, 8) : renderRays(*scene, smallSettings(), Visibility::rays, 8);
         if (first.empty()) first = frame.irradiance.texels;
         CHECK(frame.irradiance.texels == first);
     }

@@ -2,6 +2,7 @@
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/defaults.h"
 #include "core/scene/load_scene.h"
+#include "core/scene/view_file.h"
 
 #include "catch.h"
 #include "scenes.h"
@@ -54,6 +55,31 @@ TEST_CASE("a view file replaces camera and lights, and the notes about defaults 
     }
 }
 
+TEST_CASE("a view file changes materials by name, with the textures that they would be multiplied by", "[scene][view]")
+{
+    const Scene before = loadScene("cornell-box", {});
+    const std::string name = before.materials.at(0).name;
+    const ScratchFolder folder;
+    folder.write("view.json", R"({"scene": "cornell-box", "materials": [{"name": ")" + name + R"(", "roughness": 0.25, "metallic": 1},
+        {"name": ")" + name + R"(", "baseColor": [0.1, 0.2, 0.3]}]})");
+    const Scene scene = loadScene(folder.path("view.json"), {});
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const bool changed = before.materials[i].name == name;
+        CHECK(scene.materials[i].roughness == (changed ? 0.25f : before.materials[i].roughness));
+        CHECK(scene.materials[i].metallic == (changed ? 1.0f : before.materials[i].metallic));
+        CHECK(scene.materials[i].baseColor == (changed ? Vec4(0.1f, 0.2f, 0.3f, before.materials[i].baseColor.a) : before.materials[i].baseColor));
+    }
+
+    Scene textured = before;
+    for (TextureUse* use : {&textured.materials[0].baseColorTexture, &textured.materials[0].metallicRoughnessTexture}) use->texture = 0;
+    changeMaterials(textured, {{.name = name, .roughness = 0.5f, .metallic = {}, .baseColor = {}}}, "here");
+    CHECK(!textured.materials[0].metallicRoughnessTexture);
+    CHECK(bool(textured.materials[0].baseColorTexture));
+
+    folder.write("view.json", R"({"scene": "cornell-box", "materials": [{"name": "mirror", "roughness": 0}]})");
+    CHECK(loadError(folder.path("view.json")).find("view.json: materials: the scene has no material \"mirror\"; it has ") != std::string::npos);
+}
+
 TEST_CASE("a view file's scene is relative to the view file, not to the working directory", "[scene][view]")
 {
     LRSM_NEED_SCENES();
@@ -81,6 +107,9 @@ TEST_CASE("every mistake in a view file is one line that names the key", "[scene
         {R"({"scene": 3})", "scene: must be a string"},
         {R"({"scene": "no-such.glb"})", "no-such.glb"},
         {R"({"scene": "view.json"})", "must not be a view file"},
+        {R"({"scene": "cornell-box", "materials": [{"name": "a", "roughness": 2}]})", "roughness"},
+        {R"({"scene": "cornell-box", "materials": [{"name": "a", "baseColor": [0, 0, 2]}]})", "baseColor"},
+        {R"({"scene": "cornell-box", "materials": [{"name": "a", "colour": 2}]})", "unknown key"},
         {R"({"scene": "cornell-box", "cameras": []})", "unknown key \"cameras\""},
         {R"({"scene": "cornell-box", "camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}})", "camera.target: gives no direction"},
         {R"({"scene": "cornell-box", "camera": {"eye": [0, 0, 0]}})", "camera.target: is missing"},

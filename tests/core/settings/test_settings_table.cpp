@@ -64,6 +64,7 @@ std::string otherValue(const SettingInfo& info, const std::string& current)
         return current == first ? last : first;
     }
     if (contains(info.allowed, "power of two")) return current == "2" ? "4" : "2";
+    if (contains(info.allowed, "0 .. 3")) return current == "1" ? "2" : "1";
     if (contains(info.allowed, " .. ")) return current == "7" ? "5" : "7";
     return current == "0.3" ? "0.4" : "0.3";
 }

@@ -37,12 +37,17 @@ struct RayHit {
     Vec3 scaledNormal{0.0f};  ///< of the triangle, towards the ray's origin, not unit
 };
 
+/// Which kinds of rays a scene is asked for: bounces alone need no look at the sides of what they meet, and are faster.
+enum class RayKinds { all, bounces };
+
 /// The scene's triangles in Embree: version 3 or 4, `isa=avx2`, ROBUST (watertight), one BVH. Alpha-masked hits are passed through.
-/// Same bits for any number of threads: the BVH is built by one. Keeps a pointer to `scene`. Throws MachineError.
+/// Same bits for any number of threads: the BVH is built by one. Keeps a pointer to `scene`. Throws MachineError; where the program is built without Embree
+/// (LRSM_PASSES_ONLY), always.
 class EmbreeScene {
   public:
-    explicit EmbreeScene(const Scene& scene);
+    explicit EmbreeScene(const Scene& scene, RayKinds kinds = RayKinds::all);
     ~EmbreeScene();  // where GeometryData is complete
+    EmbreeScene(EmbreeScene&&) noexcept;
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
@@ -50,6 +55,7 @@ class EmbreeScene {
     bool occluded(const Ray& ray) const;
 
     const Scene& scene() const { return *scene_; }
+    std::size_t bytes() const;  ///< held by Embree
 
     /// How far a ray must start off a surface at p, along the geometric normal, not to meet it again: 16 float steps of the position
     /// plus a share of the scene's largest coordinate (barycentric interpolation rounds at the size of the vertices).
@@ -61,6 +67,7 @@ class EmbreeScene {
 
   private:
     struct GeometryData;
+    struct Memory;
     struct Release {
         void operator()(RTCDeviceTy* device) const;
         void operator()(RTCSceneTy* scene) const;
@@ -68,8 +75,19 @@ class EmbreeScene {
     const Scene* scene_;
     float floor_ = 0.0f;
     std::unique_ptr<GeometryData[]> data_;
+    std::unique_ptr<Memory> memory_;  ///< outlives the device, which reports to it
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> embree_;
 };
+
+/// As a pass's output: a size, and no arrays of ours.
+template <class Visit>
+void forEachArray(const EmbreeScene&, Visit&&)
+{
+}
+inline std::size_t bytesOf(const EmbreeScene& scene)
+{
+    return scene.bytes();
+}
 
 }  // namespace lrsm

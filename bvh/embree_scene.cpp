@@ -1,8 +1,8 @@
-#include "reference/embree_scene.h"
+#include "bvh/embree_scene.h"
 
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "reference/coincident.h"
+#include "bvh/coincident.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -69,8 +70,17 @@ RTCRay embreeRay(const Ray& ray)
 
 }  // namespace
 
-/// Called for hits on geometry that is single-sided, alpha-masked or leads beyond the reach only; clears `valid` where the ray goes on. Our rays come one by
-/// one.
+struct EmbreeScene::Memory {
+    std::atomic<std::int64_t> bytes{0};
+    static bool count(void* memory, ssize_t bytes, bool /*done*/)
+    {
+        static_cast<Memory*>(memory)->bytes += bytes;
+        return true;
+    }
+};
+
+/// Called for hits on geometry that is alpha-masked, leads beyond the reach, or is single-sided where fronts and backs matter; clears `valid` where the ray goes on.
+/// Our rays come one by one.
 void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* arguments)
 {
     if (arguments->valid[0] != -1) return;
@@ -95,7 +105,7 @@ void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* argume
     if (data.alphaMask && !passesAlphaTest(*data.scene, {data.mesh, hit.primID, hit.u, hit.v})) arguments->valid[0] = 0;
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new GeometryData[scene.meshes.size()])
+EmbreeScene::EmbreeScene(const Scene& scene, RayKinds kinds) : scene_(&scene), data_(new GeometryData[scene.meshes.size()]), memory_(new Memory)
 {
     const Aabb& extent = extentOf(scene);
     const Vec3 largest = glm::max(glm::abs(extent.min), glm::abs(extent.max));
@@ -106,6 +116,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
     const ThreadLimit oneBuilder(1);
     device_.reset(rtcNewDevice("isa=avx2"));
     if (!device_) fail(nullptr, "cannot be started with isa=avx2");
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), &Memory::count, memory_.get());
     embree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(embree_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_MEDIUM);
@@ -115,7 +126,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
         const Mesh& mesh = scene.meshes[m];
         const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
         data_[m] = {
-            .scene = &scene, .mesh = m, .singleSided = !material.doubleSided, .alphaMask = material.alphaMask, .beyondReach = leadsBeyondReach(scene, mesh)};
+            .scene = &scene, .mesh = m, .singleSided = kinds == RayKinds::all && !material.doubleSided, .alphaMask = material.alphaMask, .beyondReach = leadsBeyondReach(scene, mesh)};
 
         RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copies, not shared buffers: Embree reads 16 bytes at the last vertex, beyond the end of ours.
@@ -141,6 +152,12 @@ EmbreeScene::EmbreeScene(const Scene& scene) : scene_(&scene), data_(new Geometr
 }
 
 EmbreeScene::~EmbreeScene() = default;
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+
+std::size_t EmbreeScene::bytes() const
+{
+    return static_cast<std::size_t>(memory_->bytes.load());
+}
 
 void EmbreeScene::Release::operator()(RTCDeviceTy* device) const
 {

@@ -1,16 +1,16 @@
-#include "apps/validate/voxel_ray.h"
+#include "voxel/voxel_ray.h"
 
 namespace lrsm {
 namespace {
 
 /// Part of the ray inside the grid's cube.
-struct Span {
+struct RaySpan {
     float begin = 0.0f, end = 0.0f;
 };
 
-Span clipToGrid(const Vec3& origin, const Vec3& direction, float start, float edge)
+RaySpan clipToGrid(const Vec3& origin, const Vec3& direction, float start, float edge)
 {
-    Span span{start, kInfinity};
+    RaySpan span{start, kInfinity};
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0.0f) {
             if (!(origin[axis] >= 0.0f && origin[axis] < edge)) return {};
@@ -72,7 +72,7 @@ std::optional<VoxelRun> firstOccupied(const OpacityPyramid& opacity, const Vec3&
 {
     const BitGrid& bits = opacity.base;
     const int n = bits.grid.resolution;
-    const Span span = clipToGrid(origin, direction, start, static_cast<float>(n));
+    const RaySpan span = clipToGrid(origin, direction, start, static_cast<float>(n));
     if (!(span.begin < span.end)) return {};
 
     Walk walk{origin, direction, 1.0f / direction, span.begin};

@@ -1,4 +1,4 @@
-#include "apps/validate/voxel_ray.h"
+#include "voxel/voxel_ray.h"
 
 #include "apps/validate/equations/synthetic_grids.h"
 
@@ -8,7 +8,7 @@ using namespace lrsm;
 
 namespace {
 
-struct Random {
+struct RayRandom {
     std::uint32_t counter = 0;
     float operator()() { return unitFloat(philox({counter++, 0, 0, 0}, {7, 11})[0]); }
 };
@@ -33,7 +33,7 @@ TEST_CASE("voxel rays stop where brute force over all occupied voxels says", "[v
 {
     constexpr double kGraze = 1e-4;  // shorter ways through a voxel may be missed, or found, by rounding
     const int resolution = GENERATE(2, 16, 64);
-    Random random;
+    RayRandom random;
     int hits = 0, misses = 0;
     for (int round = 0; round < 4; ++round) {
         std::vector<glm::ivec3> occupied;

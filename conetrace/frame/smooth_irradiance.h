@@ -1,0 +1,19 @@
+#pragma once
+
+#include "conetrace/frame/gbuffer.h"
+
+namespace lrsm {
+
+/// 1 / (distance of what a pixel sees), cosine-weighted mean over the hemisphere, as far as the picture itself shows it, 1/m: along eight directions of the
+/// screen the horizon rises with what stands above the tangent plane, and a rise of the sine from e0 to e1 covers e1^2 - e0^2 of that slice's weight. What
+/// the picture does not show counts as far. 0 where nothing was drawn.
+Image<float> nearnessOf(const GBuffer& gbuffer);
+
+/// `passes` (1..3) a-trous passes after filterIrradiance: tents of 3x3 taps, 4, 8, 16 pixels apart, over pixels of the same surface (same_surface.h). A tap at
+/// distance x weighs max(0, 1 - x nearness / kGradientTolerance) besides, by the larger nearness of the two: the irradiance gradient on a wall is bounded by
+/// nearness (Ward and Heckbert, "Irradiance Gradients", 1992), so open walls are smoothed and corners and contacts keep their shading. A constant field stays
+/// constant. The tolerance is measured: .25 costs the built-in scenes up to 4 % at 320x180.
+inline constexpr float kGradientTolerance = 0.125f;
+Image<Vec3> smoothIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int passes);
+
+}  // namespace lrsm

@@ -1,0 +1,87 @@
+#include "conetrace/frame/smooth_irradiance.h"
+
+#include "catch.h"
+
+using namespace lrsm;
+
+namespace {
+
+/// A floor z = 0 seen from above, one metre a pixel; from column `wallAt` on a wall that rises along z, one metre a pixel.
+GBuffer corner(int width, int height, int wallAt)
+{
+    GBuffer g;
+    g.width = width;
+    g.height = height;
+    g.position = g.geometricNormal = g.normal = Image<Vec3>(width, height);
+    g.objectId = Image<std::uint32_t>(width, height, 1u);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool wall = x >= wallAt;
+            g.position.at(x, y) = wall ? Vec3(wallAt, y, x - wallAt + 1) : Vec3(x, y, 0);
+            g.normal.at(x, y) = g.geometricNormal.at(x, y) = wall ? Vec3(-1, 0, 0) : Vec3(0, 0, 1);
+        }
+    return g;
+}
+
+}  // namespace
+
+TEST_CASE("smoothing: a constant field stays constant, up to the corner", "[conetrace][smooth]")
+{
+    const GBuffer g = corner(64, 24, 40);
+    const Image<Vec3> out = smoothIrradiance(Image<Vec3>(64, 24, Vec3(0.3f, 7, 1e4f)), g, 3);
+    for (const Vec3& e : out.texels)
+        for (int c = 0; c < 3; ++c) REQUIRE(e[c] == Approx(Vec3(0.3f, 7, 1e4f)[c]).epsilon(1e-6));
+}
+
+TEST_CASE("smoothing: on an open floor a point spreads as the product of tents says", "[conetrace][smooth]")
+{
+    const GBuffer g = corner(96, 96, 96);
+    Image<Vec3> in(96, 96);
+    in.at(48, 48) = Vec3(1);
+    const Image<Vec3> out = smoothIrradiance(in, g, 2);
+    CHECK(out.at(48, 48).x == Approx(0.5 * 0.5 * 0.5 * 0.5));
+    // Tents 4 and 8 apart: weights of -12, -8, -4, 0, 4, 8, 12 along an axis, in 1/16.
+    const double weights[] = {1, 2, 3, 4, 3, 2, 1};
+    for (int i = -3; i <= 3; ++i) {
+        CAPTURE(i);
+        CHECK(out.at(48 + 4 * i, 48).x == Approx(weights[i + 3] / 16 * 4 / 16));
+        CHECK(out.at(48, 48 + 4 * i).x == Approx(weights[i + 3] / 16 * 4 / 16));
+    }
+    CHECK(out.at(49, 48).x == 0.0f);
+}
+
+TEST_CASE("smoothing: light does not cross the corner, and moves less along it the nearer it is", "[conetrace][smooth]")
+{
+    const GBuffer g = corner(96, 48, 64);
+    Image<Vec3> in(96, 48);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 64; x < 96; ++x) in.at(x, y) = Vec3(1);
+    const Image<Vec3> out = smoothIrradiance(in, g, 3);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) REQUIRE(out.at(x, y) == Vec3(0));
+
+    // A tap 4 m off weighs less than on an open floor where a wall stands 6 m away, and nothing where one stands a metre away.
+    const auto moved = [&](int x) {
+        Image<Vec3> point(96, 48);
+        point.at(x, 24) = Vec3(1);
+        return 1.0f - smoothIrradiance(point, g, 1).at(x, 24).x;
+    };
+    CHECK(moved(63) == 0.0f);
+    CHECK(moved(20) > moved(50));
+    CHECK(moved(50) > moved(58));
+    CHECK(moved(20) > 0.5f);
+}
+
+TEST_CASE("smoothing: nearness falls with the distance of a wall, and an open floor has none", "[conetrace][smooth]")
+{
+    // Scaling the world scales distances: nearness times size is the same.
+    GBuffer g = corner(192, 192, 128);
+    const Image<float> nearness = nearnessOf(g);
+    CHECK(nearness.at(10, 96) < 0.02f);
+    CHECK(nearness.at(127, 96) > nearness.at(120, 96));
+    CHECK(nearness.at(120, 96) > nearness.at(100, 96));
+    for (Vec3& p : g.position.texels) p *= 4.0f;
+    const Image<float> larger = nearnessOf(g);
+    for (std::size_t i = 0; i < larger.texels.size(); ++i) REQUIRE(larger.texels[i] == Approx(nearness.texels[i] / 4).margin(1e-7));
+    for (const float v : nearnessOf(corner(32, 32, 32)).texels) REQUIRE(v == 0.0f);
+}
