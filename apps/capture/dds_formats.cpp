@@ -159,9 +159,10 @@ constexpr LegacyCode kLegacyCodes[] = {{36, 11}, {110, 13}, {111, 54}, {112, 34}
 struct LegacyName {
     std::string_view letters, meaning;
 };
-constexpr LegacyName kLegacyNames[] = {{"DXT1", "BC1_UNORM"}, {"DXT2", "BC2_UNORM"}, {"DXT3", "BC2_UNORM"}, {"DXT4", "BC3_UNORM"},       {"DXT5", "BC3_UNORM"},
-                                       {"ATI1", "BC4_UNORM"}, {"BC4U", "BC4_UNORM"}, {"BC4S", "BC4_SNORM"}, {"ATI2", "BC5_UNORM"},       {"BC5U", "BC5_UNORM"},
-                                       {"BC5S", "BC5_SNORM"}, {"UYVY", "video"},     {"YUY2", "video"},     {"RGBG", "R8G8_B8G8_UNORM"}, {"GRGB", "G8R8_G8B8_UNORM"}};
+constexpr LegacyName kLegacyNames[] = {{"DXT1", "BC1_UNORM"}, {"DXT2", "BC2_UNORM"},       {"DXT3", "BC2_UNORM"},      {"DXT4", "BC3_UNORM"},
+                                       {"DXT5", "BC3_UNORM"}, {"ATI1", "BC4_UNORM"},       {"BC4U", "BC4_UNORM"},      {"BC4S", "BC4_SNORM"},
+                                       {"ATI2", "BC5_UNORM"}, {"BC5U", "BC5_UNORM"},       {"BC5S", "BC5_SNORM"},      {"UYVY", "video"},
+                                       {"YUY2", "video"},     {"RGBG", "R8G8_B8G8_UNORM"}, {"GRGB", "G8R8_G8B8_UNORM"}};
 
 namespace LegacyFlag {
 enum : std::uint32_t { alphaPixels = 0x1, alphaOnly = 0x2, hasFourCC = 0x4, rgbMasks = 0x40, luminance = 0x20000 };
@@ -170,10 +171,11 @@ enum : std::uint32_t { alphaPixels = 0x1, alphaOnly = 0x2, hasFourCC = 0x4, rgbM
 [[noreturn]] void refuseFormat(const std::string& place, std::string name)
 {
     if (name.starts_with("BC")) name += ", which is compressed in blocks: its values are no longer those of the pass";
-    throw InputError(place, "is in " + name +
-                                "; what is read is R8, R16, R32 with 1 to 4 channels (FLOAT, UNORM, SNORM, UINT, SINT, TYPELESS), R8G8B8A8_UNORM_SRGB, D16, D24, "
-                                "D32, R10G10B10A2, R11G11B10_FLOAT, R9G9B9E5, B5G6R5, B5G5R5A1, B4G4R4A4, B8G8R8A8, B8G8R8X8, and D3D9 headers with masks: save "
-                                "one of these");
+    throw InputError(place,
+                     "is in " + name +
+                         "; what is read is R8, R16, R32 with 1 to 4 channels (FLOAT, UNORM, SNORM, UINT, SINT, TYPELESS), R8G8B8A8_UNORM_SRGB, D16, D24, "
+                         "D32, R10G10B10A2, R11G11B10_FLOAT, R9G9B9E5, B5G6R5, B5G5R5A1, B4G4R4A4, B8G8R8A8, B8G8R8X8, and D3D9 headers with masks: save "
+                         "one of these");
 }
 
 double linearFromSrgb(double encoded)
@@ -236,7 +238,8 @@ TexelLayout layoutOfLegacy(const LegacyPixelFormat& format, const std::string& p
         // A file of red alone leaves green and blue empty.
         if (!used || format.masks[c] == 0) continue;
         const std::uint32_t run = format.masks[c] >> std::countr_zero(format.masks[c]);
-        if ((run & (run + 1)) != 0 || (format.bits < 32 && format.masks[c] >> format.bits != 0)) refuseFormat(place, "a format whose masks are no runs of bits");
+        if ((run & (run + 1)) != 0 || (format.bits < 32 && format.masks[c] >> format.bits != 0))
+            refuseFormat(place, "a format whose masks are no runs of bits");
         layout.masks[static_cast<std::size_t>(layout.channels++)] = format.masks[c];
     }
     if (layout.channels == 0 || format.bits % 8 != 0 || format.bits < 8 || format.bits > 32)

@@ -15,12 +15,12 @@ namespace lrsm {
 
 /// What a channel's bits stand for.
 enum class TexelCode {
-    number,          ///< an IEEE float or an integer, by the dtype
-    unorm,           ///< bits / (2^n - 1)
-    unormSrgb,       ///< the same, and R, G, B are sRGB encoded
-    snorm,           ///< max(-1, bits / (2^(n - 1) - 1))
-    typeless,        ///< whatever a buffer of the golden is
-    packedUnorm,     ///< unorm in the bits of `masks`, of one word
+    number,       ///< an IEEE float or an integer, by the dtype
+    unorm,        ///< bits / (2^n - 1)
+    unormSrgb,    ///< the same, and R, G, B are sRGB encoded
+    snorm,        ///< max(-1, bits / (2^(n - 1) - 1))
+    typeless,     ///< whatever a buffer of the golden is
+    packedUnorm,  ///< unorm in the bits of `masks`, of one word
     packedUnormSrgb,
     packedUint,      ///< integers there
     float11,         ///< R11G11B10_FLOAT: unsigned floats with 5 bits of exponent

@@ -2,8 +2,8 @@
 
 #include "core/base/errors.h"
 
-#include <memory>
 #include <zip.h>
+#include <memory>
 
 namespace lrsm {
 

@@ -5,7 +5,8 @@
 #include "apps/capture/npz.h"
 #include "apps/capture/passes.h"
 #include "apps/check/candidate_map.h"
-#include "apps/check/compare.h"
+#include "apps/check/given_arrays.h"
+#include "apps/check/near_misses.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -25,101 +26,6 @@ namespace lrsm {
 namespace {
 
 namespace fs = std::filesystem;
-
-GivenArray fromNpy(NpyArray array)
-{
-    return {.dtype = array.dtype, .encoding = Encoding::number, .encodingKnown = false, .shape = std::move(array.shape), .bytes = std::move(array.bytes)};
-}
-
-/// What a typeless format is taken for: the golden's own type where the width is the same, else float, but for 8 bits, which have none.
-void takeTypeless(const Buffer& golden, GivenArray& given)
-{
-    const std::size_t bytes = sizeOf(given.dtype);
-    if (bytes == sizeOf(golden.dtype) && golden.encoding != Encoding::bits) {
-        given.dtype = golden.dtype;
-        given.encoding = golden.encoding;
-    } else if (bytes == 1) {
-        given.encoding = Encoding::unorm;
-    } else {
-        given.dtype = bytes == 2 ? Dtype::f2 : golden.dtype == Dtype::u4 ? Dtype::u4 : Dtype::f4;
-    }
-    given.note = std::string("typeless, taken as ") + std::string(nameOf(given.dtype)) + (given.encoding == Encoding::unorm ? " unorm" : "");
-}
-
-/// One mip of all layers.
-GivenArray fromTexture(const Buffer& golden, const DdsTexture& texture, std::uint32_t mip)
-{
-    const auto extent = [&](std::uint32_t n) { return std::size_t(std::max(1u, n >> mip)); };
-    const TexelLayout& layout = texture.layout;
-    GivenArray given;
-    given.dtype = layout.dtype;
-    given.encoding = layout.code == TexelCode::unorm ? Encoding::unorm : Encoding::number;
-    // Integers are what the golden's integers are: numbers, or codes of UNORM.
-    given.encodingKnown = layout.code != TexelCode::number || isFloat(layout.dtype);
-    given.shape = {texture.layers, extent(texture.depth), extent(texture.height), extent(texture.width), std::size_t(layout.channels)};
-    for (std::uint32_t layer = 0; layer < texture.layers; ++layer) {
-        const auto level = texture.level(layer, mip);
-        given.bytes.insert(given.bytes.end(), level.begin(), level.end());
-    }
-    if (layout.code == TexelCode::typeless) takeTypeless(golden, given);
-    if (layout.code == TexelCode::number || layout.code == TexelCode::unorm || layout.code == TexelCode::typeless) return given;
-    const std::vector<double> values = decodedTexels(layout, given.bytes);
-    given.dtype = Dtype::f8;
-    given.bytes.resize(values.size() * sizeof(double));
-    if (!values.empty()) std::memcpy(given.bytes.data(), values.data(), given.bytes.size());
-    given.note = layout.name + " in the file";
-    return given;
-}
-
-GivenArray fromLayer(const LayeredImage& image, const ImageLayer& layer)
-{
-    const std::size_t channels = layer.channelNames.size(), pixels = channels ? layer.values.size() / channels : 0;
-    GivenArray given;
-    given.shape = {std::size_t(image.height), std::size_t(image.width), channels};
-    const auto take = [&](Dtype dtype, const void* data, std::size_t bytes) {
-        given.dtype = dtype;
-        given.bytes.resize(bytes);
-        if (bytes) std::memcpy(given.bytes.data(), data, bytes);
-    };
-    take(Dtype::f4, layer.values.data(), layer.values.size() * sizeof(float));
-    if (layer.integers.empty()) return given;
-    // Whole numbers as they are; beside floats in doubles, which hold both.
-    std::vector<std::uint32_t> whole(layer.values.size());
-    std::vector<double> mixed(layer.values.begin(), layer.values.end());
-    for (const ImageLayer::Integers& channel : layer.integers)
-        for (std::size_t i = 0; i < pixels; ++i) mixed[i * channels + channel.channel] = whole[i * channels + channel.channel] = channel.values[i];
-    if (layer.integers.size() == channels)
-        take(Dtype::u4, whole.data(), whole.size() * sizeof(std::uint32_t));
-    else
-        take(Dtype::f8, mixed.data(), mixed.size() * sizeof(double));
-    return given;
-}
-
-/// One channel as a layer of its own: "gbuffer.depth" of a buffer without components.
-ImageLayer channelOf(const ImageLayer& layer, std::size_t channel)
-{
-    const std::size_t channels = layer.channelNames.size();
-    ImageLayer single;
-    single.channelNames = {layer.channelNames[channel]};
-    for (std::size_t i = channel; i < layer.values.size(); i += channels) single.values.push_back(layer.values[i]);
-    for (const ImageLayer::Integers& integers : layer.integers)
-        if (integers.channel == channel) single.integers.push_back({0, integers.values});
-    return single;
-}
-
-std::string lowered(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-/// Letters and digits alone: "GBuffer_Normal" and "gbuffer.normal" are the same.
-std::string bareName(const std::string& text)
-{
-    std::string bare = lowered(text);
-    std::erase_if(bare, [](unsigned char c) { return !std::isalnum(c); });
-    return bare;
-}
 
 constexpr std::array<const char*, 9> kPictureEndings = {".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".tga", ".hdr", ".pfm"};
 
@@ -157,39 +63,22 @@ class CandidateReader {
             const std::string extension = fs::path(file).extension().string();
             const bool repeats = std::any_of(golden_.buffers.begin(), golden_.buffers.end(), [&](const Buffer& b) { return b.dds && b.dds->file == file; });
             if (repeats) continue;
-            if (isData(lowered(extension)) && !used_.contains(file)) names.push_back(file);
+            if (isData(extension) && !used_.contains(file)) names.push_back(file);
         }
         return names;
     }
 
-    /// What is nearly of a buffer, but is not found: files, arrays of .npz, layers of EXR, keys of the map.
-    std::vector<std::string> nearMisses() const
+    /// Names that are in the folder beside those that were looked for: files of no use, arrays of .npz, layers of EXR.
+    std::vector<NamedThing> namesHeld() const
     {
-        std::vector<std::string> misses;
-        const auto look = [&](const std::string& name, const std::string& where) {
-            for (const Buffer& buffer : golden_.buffers) {
-                if (name == buffer.name) return;
-                const std::string bare = bareName(name), wanted = bareName(buffer.name);
-                if (bare == wanted || (bare.size() > 8 && editDistance(bare, wanted) == 1)) {
-                    misses.push_back(where + " is of no buffer of the golden; did you mean " + buffer.name + "?" +
-                                     (lowered(name) == buffer.name ? " (names are told apart by case)" : ""));
-                    return;
-                }
-            }
-        };
-        for (const std::string& file : unused()) look(fs::path(file).stem().string(), file);
-        for (const auto& [file, names] : arrays_)
-            for (const std::string& name : names) look(name, file + ", array " + name);
+        std::vector<NamedThing> names;
+        for (const std::string& file : unused()) names.push_back({fs::path(file).stem().string(), file});
+        for (const auto& [file, arrays] : arrays_)
+            for (const std::string& name : arrays) names.push_back({name, file + ", array " + name});
         for (const auto& [key, image] : pictures_)
             for (const ImageLayer& layer : image.layers)
-                if (!layer.name.empty()) look(layer.name, key.first + ", layer " + layer.name);
-        for (const MapEntry& entry : map_)
-            if (std::none_of(golden_.buffers.begin(), golden_.buffers.end(), [&](const Buffer& b) { return matches(entry, b.name); })) {
-                const std::size_t before = misses.size();
-                look(entry.pattern, "the map's key \"" + entry.pattern + "\"");
-                if (misses.size() == before) misses.push_back("the map's key \"" + entry.pattern + "\" is of no buffer of the golden");
-            }
-        return misses;
+                if (!layer.name.empty()) names.push_back({layer.name, key.first + ", layer " + layer.name});
+        return names;
     }
 
     /// What was said of the pictures that were read.
@@ -362,19 +251,6 @@ class CandidateReader {
     std::set<std::string> broken_;  ///< said once: files that may hold any buffer, and cannot be read
 };
 
-std::string unusedNote(const std::string& file, const Capture& golden)
-{
-    const std::string stem = fs::path(file).stem().string();
-    std::string nearest;
-    std::size_t least = std::max<std::size_t>(stem.size() / 3, 2);
-    for (const Buffer& buffer : golden.buffers)
-        if (const std::size_t distance = editDistance(stem, buffer.name); distance <= least && distance > 0) {
-            least = distance - 1;
-            nearest = buffer.name;
-        }
-    return file + " is of no buffer of the golden" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
-}
-
 /// What the candidate's own manifest, when it has one, says otherwise.
 void compareManifests(const std::string& folder, const Capture& golden, std::vector<std::string>& notes)
 {
@@ -389,20 +265,6 @@ void compareManifests(const std::string& folder, const Capture& golden, std::vec
         notes.push_back("its manifest has another setting: " + d.key + "=" + d.b + ", golden " + d.a);
 }
 
-/// Bits of one packing into the other.
-void repack(const Buffer& from, Buffer& to)
-{
-    to.bytes.assign(to.elements() * sizeOf(to.dtype), std::byte{0});
-    const std::vector<std::size_t> extents = extentsOf(to);
-    for (std::size_t bit = 0; bit < valueCount(from); ++bit) {
-        if (decodedValue(from, bit) == 0.0) continue;
-        const std::vector<std::size_t> at = indicesOf(from, bit);
-        if (at[0] >= extents[0] || at[1] >= extents[1] || at[2] >= extents[2]) continue;
-        const std::size_t target = elementAt(to, at);
-        to.bytes[target / 8] |= std::byte(1u << (target & 7));
-    }
-}
-
 }  // namespace
 
 const CandidateBuffer* Candidate::find(const std::string& name) const
@@ -415,7 +277,7 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
 {
     std::vector<MapEntry> map;
     if (!options.map.empty()) map = readCandidateMap(options.map);
-    CandidateReader reader(folder, golden, std::move(map));
+    CandidateReader reader(folder, golden, map);
     Candidate candidate;
     candidate.folder = folder;
     compareManifests(folder, golden, candidate.notes);
@@ -427,7 +289,7 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
             candidate.unreadable.push_back({buffer.name, error.what()});
         }
     }
-    candidate.nearMisses = reader.nearMisses();
+    candidate.nearMisses = nearMisses(golden, reader.namesHeld(), map);
     candidate.notes.insert(candidate.notes.end(), candidate.nearMisses.begin(), candidate.nearMisses.end());
     for (const std::string& note : reader.pictureNotes()) candidate.notes.push_back(note);
     if (options.passes.empty())
@@ -441,21 +303,6 @@ const UnreadableBuffer* Candidate::findUnreadable(const std::string& name) const
 {
     const auto found = std::find_if(unreadable.begin(), unreadable.end(), [&](const UnreadableBuffer& b) { return b.name == name; });
     return found == unreadable.end() ? nullptr : &*found;
-}
-
-Capture layOver(const Capture& golden, const Candidate& candidate)
-{
-    Capture mixed = golden;
-    for (const CandidateBuffer& from : candidate.buffers) findBuffer(mixed.buffers, from.buffer.name)->bytes = from.buffer.bytes;
-    Buffer* rows = findBuffer(mixed.buffers, "voxel.bits");
-    Buffer* bricks = findBuffer(mixed.buffers, "voxel.bricks");
-    if (rows && bricks) {
-        if (candidate.find("voxel.bits"))
-            repack(*rows, *bricks);
-        else if (candidate.find("voxel.bricks"))
-            repack(*bricks, *rows);
-    }
-    return mixed;
 }
 
 }  // namespace lrsm

@@ -9,6 +9,7 @@
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <filesystem>
 
 namespace lrsm {
@@ -72,6 +73,13 @@ void decodeSrgb(ImageLayer& layer)
         if (layer.channelNames[i % channels] != "A") layer.values[i] = linearFromSrgb(layer.values[i]);
 }
 
+/// The library multiplies by 1 / (2^n - 1): the quotient, correctly rounded.
+void restoreCodes(ImageLayer& layer, OIIO::TypeDesc format)
+{
+    const float most = format.size() == 1 ? 255.0f : 65535.0f;
+    for (float& value : layer.values) value = std::floor(value * most + 0.5f) / most;
+}
+
 /// A part's channels, interleaved, over the picture's rectangle.
 struct PartPixels {
     std::vector<float> floats;
@@ -117,7 +125,6 @@ OIIO::TypeDesc formatOf(const OIIO::ImageSpec& spec, std::size_t channel)
 
 void checkSize(std::int64_t width, std::int64_t height, const std::string& path)
 {
-    if (width <= 0 || height <= 0) throw InputError(path, "is not a flat picture");
     if (width > kMaxPixels || width * height > kMaxPixels) throw InputError(path, "is larger than 2^28 pixels");
 }
 
@@ -279,7 +286,7 @@ LayeredImage readImage(const std::string& path, Transfer transfer)
             image.notes.push_back("part " + (name.empty() ? std::to_string(part) : "\"" + name + "\"") + " is deep and is passed over");
             continue;
         }
-        if (spec.nchannels <= 0 || spec.depth > 1) throw InputError(path, "is not a flat picture");
+        if (spec.nchannels <= 0 || spec.depth > 1 || spec.width <= 0 || spec.height <= 0) throw InputError(path, "is not a flat picture");
         if (!exr || spec.full_width <= 0 || spec.full_height <= 0) {
             spec.full_x = spec.x, spec.full_y = spec.y;
             spec.full_width = spec.width, spec.full_height = spec.height;
@@ -296,8 +303,8 @@ LayeredImage readImage(const std::string& path, Transfer transfer)
         }
         noteWindows(spec, image.notes);
         addLayers(image, spec, readPart(*input, spec, part, path), name, first);
-        if (!exr && !spec.format.is_floating_point() && transfer == Transfer::srgb)
-            for (ImageLayer& layer : image.layers) decodeSrgb(layer);
+        if (!exr && !spec.format.is_floating_point())
+            for (ImageLayer& layer : image.layers) transfer == Transfer::srgb ? decodeSrgb(layer) : restoreCodes(layer, spec.format);
         if (!first) continue;
         for (const OIIO::ParamValue& attribute : spec.extra_attribs)
             if (attribute.name().string().starts_with("lrsm:") && attribute.type() == OIIO::TypeString)
