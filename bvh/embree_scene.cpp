@@ -1,8 +1,8 @@
 #include "bvh/embree_scene.h"
 
+#include "bvh/coincident.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "bvh/coincident.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -79,8 +79,8 @@ struct EmbreeScene::Memory {
     }
 };
 
-/// Called for hits on geometry that is alpha-masked, leads beyond the reach, or is single-sided where fronts and backs matter; clears `valid` where the ray goes on.
-/// Our rays come one by one.
+/// Called for hits on geometry that is alpha-masked, leads beyond the reach, or is single-sided where fronts and backs matter; clears `valid` where the ray
+/// goes on. Our rays come one by one.
 void EmbreeScene::GeometryData::filter(const RTCFilterFunctionNArguments* arguments)
 {
     if (arguments->valid[0] != -1) return;
@@ -125,8 +125,11 @@ EmbreeScene::EmbreeScene(const Scene& scene, RayKinds kinds) : scene_(&scene), d
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
         const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-        data_[m] = {
-            .scene = &scene, .mesh = m, .singleSided = kinds == RayKinds::all && !material.doubleSided, .alphaMask = material.alphaMask, .beyondReach = leadsBeyondReach(scene, mesh)};
+        data_[m] = {.scene = &scene,
+                    .mesh = m,
+                    .singleSided = kinds == RayKinds::all && !material.doubleSided,
+                    .alphaMask = material.alphaMask,
+                    .beyondReach = leadsBeyondReach(scene, mesh)};
 
         RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         // Copies, not shared buffers: Embree reads 16 bytes at the last vertex, beyond the end of ours.

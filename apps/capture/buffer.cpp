@@ -133,6 +133,10 @@ double decodedValue(const Buffer& buffer, std::size_t i)
     case Dtype::i4: return double(buffer.as<std::int32_t>()[i]);
     case Dtype::f2: return double(floatFromHalf(buffer.as<std::uint16_t>()[i]));
     case Dtype::f4: return double(buffer.as<float>()[i]);
+    case Dtype::b1: return buffer.bytes[i] == std::byte{0} ? 0.0 : 1.0;
+    case Dtype::i1: return double(buffer.as<std::int8_t>()[i]);
+    case Dtype::i2: return double(buffer.as<std::int16_t>()[i]);
+    case Dtype::i8: return static_cast<double>(buffer.as<std::int64_t>()[i]);
     case Dtype::f8: break;
     }
     return buffer.as<double>()[i];

@@ -39,6 +39,7 @@ const FormatRow& rowOf(DxgiFormat format)
 // The file: the magic, DDS_HEADER and DDS_HEADER_DXT10, all 32-bit words. Indices into them:
 constexpr std::size_t kWords = 37;  // 1 + 31 + 5
 static_assert(kWords * sizeof(std::uint32_t) == kDdsHeaderBytes);
+constexpr std::size_t kLegacyHeaderBytes = 128;  // without DDS_HEADER_DXT10
 enum Word : std::size_t {
     magic = 0,
     size = 1,
@@ -51,16 +52,20 @@ enum Word : std::size_t {
     pixelFormatSize = 19,
     pixelFormatFlags = 20,
     fourCC = 21,
+    bitCount = 22,
+    masks = 23,  // red, green, blue, alpha
     caps = 27,
     caps2 = 28,
     dxgiFormat = 32,
     resourceDimension = 33,
+    miscFlags = 34,
     arraySize = 35,
 };
 constexpr std::uint32_t kDdsMagic = 0x20534444, kHeaderSize = 124, kPixelFormatSize = 32, kFourCC = 0x4, kDx10 = 0x30315844;
 constexpr std::uint32_t kFlags = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000;  // caps, height, width, pitch, pixel format, mip count
 constexpr std::uint32_t kFlagDepth = 0x800000;
 constexpr std::uint32_t kCapsTexture = 0x1000, kCapsComplex = 0x8, kCapsMipmap = 0x400000, kCaps2Volume = 0x200000;
+constexpr std::uint32_t kCaps2Cube = 0x200, kCaps2Faces = 0xfc00, kMiscCube = 0x4;
 constexpr std::uint32_t kDimension2D = 3, kDimension3D = 4;
 constexpr std::uint32_t kLargestEdge = 16384, kMostLayers = 2048;
 
@@ -101,7 +106,7 @@ int channelsOf(DxgiFormat format)
 std::size_t DdsTexture::levelBytes(std::uint32_t mip) const
 {
     const auto extent = [mip](std::uint32_t n) { return std::size_t(std::max(1u, n >> mip)); };
-    return extent(width) * extent(height) * extent(depth) * bytesPerTexel(format);
+    return extent(width) * extent(height) * extent(depth) * texelBytes();
 }
 
 std::size_t DdsTexture::layerBytes() const
@@ -157,27 +162,36 @@ DdsTexture decodeDds(std::span<const std::byte> file, const std::string& place)
     std::copy_n(file.begin(), std::min(file.size(), sizeof words), std::as_writable_bytes(std::span(words)).begin());
     if (words[magic] != kDdsMagic) throw fail("is no DDS file");
     if (words[size] != kHeaderSize || words[pixelFormatSize] != kPixelFormatSize) throw fail("is no readable DDS: its header has a wrong size");
-    if (!(words[pixelFormatFlags] & kFourCC) || words[fourCC] != kDx10) throw fail("has no DX10 header; save it with one (its DXGI format is then known)");
-    if (file.size() < sizeof words) throw fail("is no readable DDS: it ends within its header");
+    const bool dx10 = (words[pixelFormatFlags] & kFourCC) && words[fourCC] == kDx10;
+    const std::size_t headerBytes = dx10 ? kDdsHeaderBytes : kLegacyHeaderBytes;
+    if (file.size() < headerBytes) throw fail("is no readable DDS: it ends within its header");
 
     DdsTexture t;
-    const auto row = std::find_if(kFormats.begin(), kFormats.end(), [&](const FormatRow& r) { return std::uint32_t(r.format) == words[dxgiFormat]; });
-    if (row == kFormats.end()) throw fail("is in DXGI format " + std::to_string(words[dxgiFormat]) + ", which captures do not use");
-    t.format = row->format;
-    if (words[resourceDimension] != kDimension2D && words[resourceDimension] != kDimension3D) throw fail("is neither a 2D texture nor a volume");
-    t.volume = words[resourceDimension] == kDimension3D;
+    if (dx10) {
+        t.layout = layoutOfDxgi(words[dxgiFormat], place);
+        t.format = static_cast<DxgiFormat>(words[dxgiFormat]);
+        if (words[resourceDimension] != kDimension2D && words[resourceDimension] != kDimension3D) throw fail("is neither a 2D texture nor a volume");
+        t.volume = words[resourceDimension] == kDimension3D;
+        t.layers = words[arraySize];
+        if (words[miscFlags] & kMiscCube && t.layers <= kMostLayers) t.layers *= 6;
+    } else {
+        t.layout = layoutOfLegacy(
+            {words[pixelFormatFlags], words[fourCC], words[bitCount], {words[masks], words[masks + 1], words[masks + 2], words[masks + 3]}}, place);
+        t.volume = (words[caps2] & kCaps2Volume) != 0;
+        t.layers = words[caps2] & kCaps2Cube ? static_cast<std::uint32_t>(std::popcount(words[caps2] & kCaps2Faces)) : 1;
+    }
     t.width = words[width];
     t.height = words[height];
     t.depth = t.volume ? words[depth] : 1;
-    t.layers = words[arraySize];
     t.mips = std::max(1u, words[mipCount]);
     if (!within(t.width, kLargestEdge) || !within(t.height, kLargestEdge) || !within(t.depth, kLargestEdge))
         throw fail("has an edge outside 1 .. " + std::to_string(kLargestEdge));
     if (!within(t.layers, t.volume ? 1 : kMostLayers)) throw fail("has " + std::to_string(t.layers) + " layers");
     if (t.mips > largestMipCount(t)) throw fail("has " + std::to_string(t.mips) + " mips, more than its size allows");
-    if (file.size() - sizeof words != t.byteSize())
-        throw fail("holds " + std::to_string(file.size() - sizeof words) + " bytes of texels where its header needs " + std::to_string(t.byteSize()));
-    t.texels.assign(file.begin() + sizeof words, file.end());
+    if (file.size() - headerBytes != t.byteSize())
+        throw fail("holds " + std::to_string(file.size() - headerBytes) + " bytes of texels where its header needs " + std::to_string(t.byteSize()) + " (" +
+                   t.layout.name + ")");
+    t.texels.assign(file.begin() + static_cast<std::ptrdiff_t>(headerBytes), file.end());
     return t;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "apps/capture/dds_formats.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,7 +13,7 @@
 /// loaders open them. "Programming Guide for DDS", learn.microsoft.com/windows/win32/direct3ddds.
 namespace lrsm {
 
-/// The values are DXGI_FORMAT's.
+/// What captures are written in. The values are DXGI_FORMAT's.
 enum class DxgiFormat : std::uint32_t {
     R32G32B32A32_FLOAT = 2,
     R16G16B16A16_FLOAT = 10,
@@ -38,7 +40,9 @@ struct DdsTexture {
     std::uint32_t layers = 1;
     bool volume = false;            ///< also when depth is 1
     std::vector<std::byte> texels;  ///< layer by layer, each with all its mips, largest first
+    TexelLayout layout = {};        ///< of a texture that was read, in whatever format; no name: `format` says all
 
+    std::size_t texelBytes() const { return layout.name.empty() ? bytesPerTexel(format) : layout.bytes; }
     std::size_t levelBytes(std::uint32_t mip) const;
     std::size_t layerBytes() const;
     std::size_t byteSize() const { return layerBytes() * layers; }
@@ -50,7 +54,8 @@ inline constexpr std::size_t kDdsHeaderBytes = 148;
 /// `texels` must be byteSize() long.
 std::vector<std::byte> encodeDds(const DdsTexture& texture);
 
-/// Strict: a DX10 header, a format of the list, a size that fits the file exactly. InputError "PLACE: why; what to do" for anything else.
+/// A DX10 header or D3D9's, a format of dds_formats.h, a size that fits the file exactly; the faces of cubes are layers. InputError
+/// "PLACE: why; what to do" for anything else.
 DdsTexture decodeDds(std::span<const std::byte> file, const std::string& place);
 DdsTexture readDds(const std::string& path);
 

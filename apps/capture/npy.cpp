@@ -22,14 +22,24 @@ struct DtypeRow {
     std::string_view name, descr;
     std::size_t bytes;
 };
-constexpr std::array<DtypeRow, 8> kDtypes = {
-    {{"u1", "|u1", 1}, {"u2", "<u2", 2}, {"u4", "<u4", 4}, {"u8", "<u8", 8}, {"i4", "<i4", 4}, {"f2", "<f2", 2}, {"f4", "<f4", 4}, {"f8", "<f8", 8}}};
+constexpr std::array<DtypeRow, 12> kDtypes = {{{"u1", "|u1", 1},
+                                               {"u2", "<u2", 2},
+                                               {"u4", "<u4", 4},
+                                               {"u8", "<u8", 8},
+                                               {"i4", "<i4", 4},
+                                               {"f2", "<f2", 2},
+                                               {"f4", "<f4", 4},
+                                               {"f8", "<f8", 8},
+                                               {"b1", "|b1", 1},
+                                               {"i1", "|i1", 1},
+                                               {"i2", "<i2", 2},
+                                               {"i8", "<i8", 8}}};
 
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
-constexpr std::size_t kPreamble = 10;  // magic, version, header length
+constexpr std::size_t kPreamble = 10;  // magic, version, header length; two bytes more from version 2.0 on
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kMaxAxes = 8;
-constexpr const char* kResave = "save it with numpy.save(file, numpy.ascontiguousarray(a, '<f4')) or another little-endian type";
+constexpr const char* kResave = "save it with numpy.save(file, a.astype('<f4')) or another type of numbers or booleans";
 
 /// Reads the header's dict, which is Python text: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }
 class HeaderText {
@@ -37,7 +47,7 @@ class HeaderText {
     HeaderText(std::string_view text, const std::string& place) : text_(text), place_(place) {}
 
     [[noreturn]] void fail(const std::string& why) const { throw InputError(place_, "is no readable .npy: " + why); }
-    void skipSpace() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size())); }
+    void skipSpace() { text_.remove_prefix(std::min(text_.find_first_not_of(" \t\r\n"), text_.size())); }
     bool take(std::string_view word)
     {
         skipSpace();
@@ -49,10 +59,12 @@ class HeaderText {
     {
         if (!take(word)) fail("its header lacks \"" + std::string(word) + "\"");
     }
+    /// Python writes single quotes; other writers double ones.
     std::string_view quoted()
     {
-        expect("'");
-        const std::size_t end = text_.find('\'');
+        const char quote = take("\"") ? '"' : '\'';
+        if (quote == '\'') expect("'");
+        const std::size_t end = text_.find(quote);
         if (end == std::string_view::npos) fail("its header breaks off");
         const std::string_view word = text_.substr(0, end);
         text_.remove_prefix(end + 1);
@@ -65,6 +77,7 @@ class HeaderText {
         const auto [next, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
         if (error != std::errc()) fail("its shape holds something that is no size");
         text_.remove_prefix(static_cast<std::size_t>(next - text_.data()));
+        if (text_.starts_with('L')) text_.remove_prefix(1);  // Python 2's long
         return value;
     }
     std::vector<std::size_t> tuple()
@@ -92,14 +105,28 @@ class HeaderText {
     const std::string& place_;
 };
 
-Dtype dtypeOfDescr(std::string_view descr, const std::string& place)
+/// The array as the file has it: what parseHeader finds beside the dtype and the shape.
+struct FileOrder {
+    bool bigEndian = false, fortran = false;
+};
+
+/// "<f4": byte order, kind, bytes. Single bytes have no order, whatever the writer says.
+Dtype dtypeOfDescr(std::string_view descr, FileOrder& order, const std::string& place)
 {
+    const bool ordered = !descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos;
+    order.bigEndian = ordered && descr[0] == '>';
+    const std::string_view name = descr.substr(ordered ? 1 : 0);
     for (std::size_t i = 0; i < kDtypes.size(); ++i)
-        if (kDtypes[i].descr == descr) return static_cast<Dtype>(i);
-    throw InputError(place, "holds elements of type '" + std::string(descr) + "', which captures do not use; " + kResave);
+        if (kDtypes[i].name == name || (name == "?" && kDtypes[i].name == "b1")) return static_cast<Dtype>(i);
+    const std::string what = name.starts_with('c')                                                    ? "complex numbers"
+                             : name.starts_with('O')                                                  ? "Python objects"
+                             : name.starts_with('S') || name.starts_with('U')                         ? "text"
+                             : name.starts_with('f') || name.starts_with('g') || name == "longdouble" ? "floats of a size that differs between machines"
+                                                                                                      : "neither numbers nor booleans";
+    throw InputError(place, "holds elements of type '" + std::string(descr) + "', " + what + "; " + kResave);
 }
 
-NpyArray parseHeader(std::string_view text, const std::string& place)
+NpyArray parseHeader(std::string_view text, FileOrder& fileOrder, const std::string& place)
 {
     NpyArray array;
     HeaderText header(text, place);
@@ -109,11 +136,12 @@ NpyArray parseHeader(std::string_view text, const std::string& place)
         const std::string_view key = header.quoted();
         header.expect(":");
         if (key == "descr" && !descr) {
-            array.dtype = dtypeOfDescr(header.quoted(), place);
+            if (header.take("[")) throw InputError(place, "holds records with named fields; save each field as an array of its own: numpy.save(file, a['x'])");
+            array.dtype = dtypeOfDescr(header.quoted(), fileOrder, place);
             descr = true;
         } else if (key == "fortran_order" && !order) {
-            if (header.take("True")) throw InputError(place, std::string("is in Fortran order; ") + kResave);
-            header.expect("False");
+            fileOrder.fortran = header.take("True");
+            if (!fileOrder.fortran) header.expect("False");
             order = true;
         } else if (key == "shape" && !shape) {
             array.shape = header.tuple();
@@ -128,6 +156,31 @@ NpyArray parseHeader(std::string_view text, const std::string& place)
     return array;
 }
 
+void swapBytes(std::vector<std::byte>& bytes, std::size_t size)
+{
+    for (std::size_t at = 0; at + size <= bytes.size(); at += size)
+        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+}
+
+/// From first index fastest to last index fastest.
+std::vector<std::byte> inCOrder(const std::vector<std::byte>& bytes, const std::vector<std::size_t>& shape, std::size_t size)
+{
+    std::vector<std::byte> result(bytes.size());
+    std::vector<std::size_t> strides(shape.size(), size), index(shape.size(), 0);
+    for (std::size_t axis = 1; axis < shape.size(); ++axis) strides[axis] = strides[axis - 1] * shape[axis - 1];
+    std::size_t from = 0;
+    for (std::size_t to = 0; to < result.size(); to += size) {
+        std::memcpy(result.data() + to, bytes.data() + from, size);
+        for (std::size_t axis = shape.size(); axis-- > 0;) {
+            from += strides[axis];
+            if (++index[axis] < shape[axis]) break;
+            from -= strides[axis] * shape[axis];
+            index[axis] = 0;
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 std::size_t sizeOf(Dtype dtype)
@@ -140,11 +193,17 @@ std::string_view nameOf(Dtype dtype)
     return kDtypes[static_cast<std::size_t>(dtype)].name;
 }
 
+bool isFloat(Dtype dtype)
+{
+    return dtype == Dtype::f2 || dtype == Dtype::f4 || dtype == Dtype::f8;
+}
+
 Dtype dtypeByName(std::string_view name, const std::string& place)
 {
     for (std::size_t i = 0; i < kDtypes.size(); ++i)
         if (kDtypes[i].name == name) return static_cast<Dtype>(i);
-    throw InputError(place, "\"" + std::string(name) + "\" is no element type; they are u1, u2, u4, u8, i4, f2, f4, f8");
+    throw InputError(
+        place, "\"" + std::string(name) + "\" is no element type; they are " + joined(kDtypes, [](const DtypeRow& row) { return std::string(row.name); }));
 }
 
 std::size_t elementCount(const std::vector<std::size_t>& shape, const std::string& place)
@@ -188,16 +247,22 @@ NpyArray decodeNpy(std::span<const std::byte> file, const std::string& place)
 {
     const auto* text = reinterpret_cast<const char*>(file.data());
     if (file.size() < kPreamble || std::string_view(text, kNpyMagic.size()) != kNpyMagic) throw InputError(place, "is no .npy file");
-    if (file[6] != std::byte{1} || file[7] != std::byte{0})
-        throw InputError(place, "is .npy of version " + std::to_string(int(file[6])) + "." + std::to_string(int(file[7])) + "; only 1.0 is read");
-    const std::size_t headerSize = static_cast<std::size_t>(file[8]) | static_cast<std::size_t>(file[9]) << 8;
-    if (file.size() < kPreamble + headerSize) throw InputError(place, "is no readable .npy: it ends within its header");
+    const int major = int(file[6]), minor = int(file[7]);
+    if (major < 1 || major > 3 || minor != 0)
+        throw InputError(place, "is .npy of version " + std::to_string(major) + "." + std::to_string(minor) + "; 1.0, 2.0 and 3.0 are read");
+    const std::size_t preamble = major == 1 ? kPreamble : kPreamble + 2;
+    std::size_t headerSize = 0;
+    for (std::size_t i = std::min(preamble, file.size()); i-- > kPreamble - 2;) headerSize = headerSize << 8 | static_cast<std::size_t>(file[i]);
+    if (file.size() < preamble || file.size() - preamble < headerSize) throw InputError(place, "is no readable .npy: it ends within its header");
 
-    NpyArray array = parseHeader(std::string_view(text + kPreamble, headerSize), place);
-    const std::size_t expected = elementCount(array.shape, place) * sizeOf(array.dtype), held = file.size() - kPreamble - headerSize;
+    FileOrder order;
+    NpyArray array = parseHeader(std::string_view(text + preamble, headerSize), order, place);
+    const std::size_t size = sizeOf(array.dtype), expected = elementCount(array.shape, place) * size, held = file.size() - preamble - headerSize;
     if (held != expected) throw InputError(place, "holds " + std::to_string(held) + " bytes of data where its shape needs " + std::to_string(expected));
-    const auto data = file.subspan(kPreamble + headerSize);
+    const auto data = file.subspan(preamble + headerSize);
     array.bytes.assign(data.begin(), data.end());
+    if (order.bigEndian && size > 1) swapBytes(array.bytes, size);
+    if (order.fortran) array.bytes = inCOrder(array.bytes, array.shape, size);
     return array;
 }
 

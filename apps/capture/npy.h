@@ -8,13 +8,15 @@
 #include <vector>
 
 /// NumPy's array file: numpy.load(path) and nothing else is needed to read a capture.
-/// Format: numpy.lib.format, version 1.0: magic, header length, a Python dict as text, the array's bytes.
+/// Format: numpy.lib.format: magic, version, header length, a Python dict as text, the array's bytes. We write version 1.0.
 namespace lrsm {
 
-/// Little endian. The names are NumPy's: unsigned, signed, IEEE float, and the bytes of one element.
-enum class Dtype { u1, u2, u4, u8, i4, f2, f4, f8 };
+/// Little endian. The names are NumPy's: boolean, unsigned, signed, IEEE float, and the bytes of one element. Captures hold u1 ... f8; the others
+/// are read.
+enum class Dtype { u1, u2, u4, u8, i4, f2, f4, f8, b1, i1, i2, i8 };
 std::size_t sizeOf(Dtype dtype);
-/// "u1" ... "f8".
+bool isFloat(Dtype dtype);
+/// "u1" ... "i8".
 std::string_view nameOf(Dtype dtype);
 /// InputError that begins with `place` for a name that is none of them.
 Dtype dtypeByName(std::string_view name, const std::string& place);
@@ -38,8 +40,8 @@ std::string npyHeader(Dtype dtype, const std::vector<std::size_t>& shape);
 /// The file's bytes. The data begin at a multiple of 64, as NumPy's own writer has it. `bytes` must be as long as the shape says.
 std::vector<std::byte> encodeNpy(Dtype dtype, const std::vector<std::size_t>& shape, std::span<const std::byte> bytes);
 
-/// Strict: version 1.0, little endian, C order, one of the dtypes above, exactly as many bytes as the shape says. InputError
-/// "PLACE: why; what to do" for anything else.
+/// Versions 1.0 to 3.0, either byte order, C or Fortran order, one of the dtypes above, exactly as many bytes as the shape says; what comes back is
+/// little endian and in C order. InputError "PLACE: why; what to do" for anything else.
 NpyArray decodeNpy(std::span<const std::byte> file, const std::string& place);
 NpyArray readNpy(const std::string& path);
 

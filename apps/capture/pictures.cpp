@@ -15,7 +15,7 @@ constexpr Rgb8 kBackground{48, 48, 48};
 
 bool isPicture(const Buffer& b)
 {
-    return b.axes.size() >= 2 && b.axes[0] == "row" && b.axes[1] == "column" && b.dtype != Dtype::u4;
+    return b.axes.size() >= 2 && b.axes[0] == "row" && b.axes[1] == "column" && b.dtype != Dtype::u4 && b.pass != "tables";
 }
 
 int channels(const Buffer& b)
@@ -33,7 +33,7 @@ std::vector<std::string> channelNames(const Buffer& b)
 
 ImageLayer layerOf(const Buffer& b)
 {
-    ImageLayer layer{b.name, channelNames(b), {}};
+    ImageLayer layer{b.name, channelNames(b), {}, {}, {}};
     layer.values.resize(valueCount(b));
     for (std::size_t i = 0; i < layer.values.size(); ++i) layer.values[i] = static_cast<float>(decodedValue(b, i));
     return layer;

@@ -37,10 +37,34 @@ std::size_t neededComponents(const Buffer& golden)
     return needed;
 }
 
+/// Axes in an order that has the file's shape, as the map says it; empty where there is none.
+std::string orderThatFits(const Buffer& golden, const std::vector<std::size_t>& extents, const GivenArray& array)
+{
+    if (extents != golden.shape || golden.axes.size() != extents.size() || extents.size() < 2) return {};
+    std::vector<std::size_t> order(extents.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    // Components first (CHW) before any other.
+    std::rotate(order.begin(), order.end() - 1, order.end());
+    const std::vector<std::size_t> first = order;
+    do {
+        std::vector<std::size_t> shape;
+        for (const std::size_t axis : order) shape.push_back(extents[axis]);
+        if (withoutOnes(shape) == withoutOnes(array.shape)) {
+            std::string text;
+            for (const std::size_t axis : order) text += (text.empty() ? "\"" : ", \"") + golden.axes[axis] + "\"";
+            return text;
+        }
+        std::next_permutation(order.begin(), order.end());
+    } while (order != first);
+    return {};
+}
+
 [[noreturn]] void refuseShape(const Buffer& golden, const std::vector<std::size_t>& expected, const GivenArray& array, const std::string& place)
 {
-    throw InputError(
-        place, "is " + shapeText(array.shape) + " where " + golden.name + " is " + shapeText(expected) + "; was it made at the golden's size and settings?");
+    const std::string order = orderThatFits(golden, expected, array);
+    throw InputError(place, "is " + shapeText(array.shape) + " where " + golden.name + " is " + shapeText(expected) +
+                                (order.empty() ? "; was it made at the golden's size and settings?"
+                                               : "; it looks like {\"axes\": [" + order + "]}: say so in a map (--map)"));
 }
 
 /// Strides of the golden's axes in the file. Axes of extent 1 may be left out or added; more channels than the golden's are passed over.
@@ -151,22 +175,39 @@ void storeValue(Buffer& buffer, std::size_t element, double value, HalfRounding 
     case Dtype::f2: return put(halfFromFloat(narrow, rounding));
     case Dtype::f4: return put(narrow);
     case Dtype::f8: return put(value);
+    case Dtype::b1:
+    case Dtype::i1:
+    case Dtype::i2:
+    case Dtype::i8: break;  // no golden holds them
     }
+    throw InputError(place, buffer.name + " is " + std::string(nameOf(buffer.dtype)) + ", which goldens do not hold");
 }
 
-bool isFloat(Dtype dtype)
-{
-    return dtype == Dtype::f2 || dtype == Dtype::f4 || dtype == Dtype::f8;
-}
+/// What the array's elements stand for. `codes`: whole numbers of another width that count the golden's UNORM steps.
+struct Meaning {
+    Encoding encoding = Encoding::number;
+    bool codes = false;
+};
 
-/// May these elements stand for the golden's, and as what?
-Encoding encodingFor(const Buffer& golden, const GivenArray& array, const Arrangement& how, const std::string& place)
+/// May these elements stand for the golden's, and as what? Integers for UNORM are codes, but for those that are UNORM formats of their own: 8 bits
+/// for 16 and the other way round. For floats they are numbers, but for those of 8 and 16 bits, which may be UNORM or SNORM.
+Meaning meaningFor(const Buffer& golden, const GivenArray& array, const Arrangement& how, const std::string& place)
 {
-    if (how.encoding) return *how.encoding;
-    if (array.encodingKnown || isFloat(array.dtype)) return array.encodingKnown ? array.encoding : Encoding::number;
-    if (array.dtype == golden.dtype) return golden.encoding;
-    if (!isFloat(golden.dtype) && golden.encoding == Encoding::number) return Encoding::number;
-    throw InputError(place, "holds " + std::string(nameOf(array.dtype)) + " where " + golden.name + " is " + std::string(nameOf(golden.dtype)) + " (" +
+    const Dtype given = array.dtype;
+    const bool unsignedSmall = given == Dtype::u1 || given == Dtype::u2, small = unsignedSmall || given == Dtype::i1 || given == Dtype::i2;
+    const bool number = isFloat(given) || given == Dtype::b1;
+    if (how.encoding == Encoding::unorm && !unsignedSmall && !number) {
+        if (golden.encoding == Encoding::unorm) return {Encoding::number, true};
+        throw InputError(place, "holds " + std::string(nameOf(given)) + ", which is no UNORM format; give u1 or u2, or \"scale\" in the map");
+    }
+    if (how.encoding) return {number ? Encoding::number : *how.encoding, false};
+    if (array.encodingKnown || number) return {array.encodingKnown ? array.encoding : Encoding::number, false};
+    if (given == golden.dtype) return {golden.encoding, false};
+    if (golden.encoding == Encoding::bits && sizeOf(given) == sizeOf(golden.dtype)) return {golden.encoding, false};
+    if (!isFloat(golden.dtype) && golden.encoding == Encoding::number) return {Encoding::number, false};
+    if (golden.encoding == Encoding::unorm && !unsignedSmall) return {Encoding::number, true};
+    if (isFloat(golden.dtype) && !small) return {Encoding::number, false};
+    throw InputError(place, "holds " + std::string(nameOf(given)) + " where " + golden.name + " is " + std::string(nameOf(golden.dtype)) + " (" +
                                 std::string(nameOf(golden.encoding)) + "); give that type, or floats, or say \"encoding\": \"unorm\" in the map");
 }
 
@@ -198,12 +239,17 @@ Arranged packVoxels(const Buffer& golden, const GivenArray& array, const Arrange
 
 Arranged arrange(const Buffer& golden, const GivenArray& array, const Arrangement& how, HalfRounding rounding, const std::string& place)
 {
-    if (golden.encoding == Encoding::bits && (array.encodingKnown || withoutOnes(array.shape) != withoutOnes(golden.shape) || array.dtype != golden.dtype))
+    if (golden.encoding == Encoding::bits && (array.encodingKnown || withoutOnes(array.shape) != withoutOnes(golden.shape) || isFloat(array.dtype) ||
+                                              array.dtype == Dtype::b1 || sizeOf(array.dtype) != sizeOf(golden.dtype)))
         return packVoxels(golden, array, how, place);
 
     const Layout layout = layOut(golden, golden.shape, array, how, place);
-    const Encoding encoding = encodingFor(golden, array, how, place);
-    const bool asIs = array.dtype == golden.dtype && encoding == golden.encoding && how.scale == 1.0 && how.offset == 0.0;
+    const Meaning meaning = meaningFor(golden, array, how, place);
+    const Encoding encoding = meaning.encoding;
+    // Packed bits have no sign: numpy's int64 holds what uint64 does.
+    const bool sameType = array.dtype == golden.dtype || encoding == Encoding::bits;
+    const bool asIs = sameType && encoding == golden.encoding && how.scale == 1.0 && how.offset == 0.0;
+    const double step = !meaning.codes ? 1.0 : golden.dtype == Dtype::u1 ? 255.0 : 65535.0;
     Arranged out;
     if (asIs && how == Arrangement{} && layout.channels == std::max<std::size_t>(golden.components.size(), 1)) {
         out.bytes = array.bytes;
@@ -225,11 +271,11 @@ Arranged arrange(const Buffer& golden, const GivenArray& array, const Arrangemen
             std::memcpy(to.bytes.data() + i * size, from.bytes.data() + at * size, size);
             continue;
         }
-        out.given[i] = decodedValue(from, at) * how.scale + how.offset;
+        out.given[i] = decodedValue(from, at) / step * how.scale + how.offset;
         storeValue(to, i, out.given[i], rounding, place);
     }
     out.bytes = std::move(to.bytes);
-    if (!asIs) out.note = std::string(nameOf(array.dtype)) + (encoding == Encoding::unorm ? " unorm" : "") + " in the file";
+    if (!asIs) out.note = std::string(nameOf(array.dtype)) + (encoding == Encoding::unorm ? " unorm" : meaning.codes ? " codes" : "") + " in the file";
     return out;
 }
 

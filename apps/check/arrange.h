@@ -15,6 +15,7 @@ struct GivenArray {
     bool encodingKnown = false;  ///< the file itself says it (DDS); else integers are taken for what the golden's integers are
     std::vector<std::size_t> shape;
     std::vector<std::byte> bytes;
+    std::string note = {};  ///< how it was read, where the element type does not say it
 };
 
 /// What a map may say of an array; the axes' names are the golden's.

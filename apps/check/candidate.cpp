@@ -2,9 +2,11 @@
 
 #include "apps/capture/capture_files.h"
 #include "apps/capture/fill.h"
+#include "apps/capture/npz.h"
 #include "apps/capture/passes.h"
 #include "apps/check/candidate_map.h"
-#include "apps/check/compare.h"
+#include "apps/check/given_arrays.h"
+#include "apps/check/near_misses.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -12,6 +14,8 @@
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -23,54 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-GivenArray fromNpy(NpyArray array)
-{
-    return {.dtype = array.dtype, .encoding = Encoding::number, .encodingKnown = false, .shape = std::move(array.shape), .bytes = std::move(array.bytes)};
-}
-
-struct ChannelType {
-    Dtype dtype;
-    Encoding encoding;
-};
-ChannelType channelTypeOf(DxgiFormat format)
-{
-    switch (format) {
-    case DxgiFormat::R32G32B32A32_FLOAT:
-    case DxgiFormat::R32_FLOAT: return {Dtype::f4, Encoding::number};
-    case DxgiFormat::R16G16B16A16_FLOAT:
-    case DxgiFormat::R16_FLOAT: return {Dtype::f2, Encoding::number};
-    case DxgiFormat::R16G16B16A16_UNORM:
-    case DxgiFormat::R16_UNORM: return {Dtype::u2, Encoding::unorm};
-    case DxgiFormat::R32_UINT: return {Dtype::u4, Encoding::number};
-    default: return {Dtype::u1, Encoding::unorm};
-    }
-}
-
-/// One mip of all layers.
-GivenArray fromTexture(const DdsTexture& texture, std::uint32_t mip)
-{
-    const auto extent = [&](std::uint32_t n) { return std::size_t(std::max(1u, n >> mip)); };
-    const ChannelType type = channelTypeOf(texture.format);
-    GivenArray given;
-    given.dtype = type.dtype;
-    given.encoding = type.encoding;
-    given.encodingKnown = true;
-    given.shape = {texture.layers, extent(texture.depth), extent(texture.height), extent(texture.width), std::size_t(channelsOf(texture.format))};
-    for (std::uint32_t layer = 0; layer < texture.layers; ++layer) {
-        const auto level = texture.level(layer, mip);
-        given.bytes.insert(given.bytes.end(), level.begin(), level.end());
-    }
-    return given;
-}
-
-GivenArray fromLayer(const LayeredImage& image, const ImageLayer& layer)
-{
-    GivenArray given;
-    given.shape = {std::size_t(image.height), std::size_t(image.width), layer.channelNames.size()};
-    given.bytes.resize(layer.values.size() * sizeof(float));
-    if (!layer.values.empty()) std::memcpy(given.bytes.data(), layer.values.data(), given.bytes.size());
-    return given;
-}
+constexpr std::array<const char*, 9> kPictureEndings = {".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".tga", ".hdr", ".pfm"};
 
 class CandidateReader {
   public:
@@ -87,14 +44,15 @@ class CandidateReader {
     {
         if (const std::optional<MapEntry> entry = entryFor(map_, golden.name)) return mapped(golden, *entry);
         if (has(golden.name + ".npy")) return finish(golden, fromNpy(readNpy(path(golden.name + ".npy"))), {}, golden.name + ".npy");
+        if (std::optional<CandidateBuffer> found = fromNpz(golden)) return found;
         for (const auto& [file, mip] : ddsPlaces(golden)) {
             if (!has(file)) continue;
             const DdsTexture& texture = dds(file);
-            if (mip < texture.mips) return finish(golden, fromTexture(texture, mip), {}, file + ", mip " + std::to_string(mip));
+            if (mip < texture.mips) return finish(golden, fromTexture(golden, texture, mip), {}, file + ", mip " + std::to_string(mip));
         }
         for (const char* ending : {".bin", ".raw"})
             if (has(golden.name + ending)) return raw(golden, golden.name + ending, golden.dtype, {});
-        return fromExr(golden);
+        return fromPicture(golden);
     }
 
     /// Files that could hold buffers and are of none; a capture's DDS files repeat its .npy.
@@ -105,13 +63,36 @@ class CandidateReader {
             const std::string extension = fs::path(file).extension().string();
             const bool repeats = std::any_of(golden_.buffers.begin(), golden_.buffers.end(), [&](const Buffer& b) { return b.dds && b.dds->file == file; });
             if (repeats) continue;
-            if ((extension == ".npy" || extension == ".dds" || extension == ".bin" || extension == ".raw") && !used_.contains(file)) names.push_back(file);
+            if (isData(extension) && !used_.contains(file)) names.push_back(file);
         }
         return names;
     }
 
+    /// Names that are in the folder beside those that were looked for: files of no use, arrays of .npz, layers of EXR.
+    std::vector<NamedThing> namesHeld() const
+    {
+        std::vector<NamedThing> names;
+        for (const std::string& file : unused()) names.push_back({fs::path(file).stem().string(), file});
+        for (const auto& [file, arrays] : arrays_)
+            for (const std::string& name : arrays) names.push_back({name, file + ", array " + name});
+        for (const auto& [key, image] : pictures_)
+            for (const ImageLayer& layer : image.layers)
+                if (!layer.name.empty()) names.push_back({layer.name, key.first + ", layer " + layer.name});
+        return names;
+    }
+
+    /// What was said of the pictures that were read.
+    std::vector<std::string> pictureNotes() const
+    {
+        std::vector<std::string> notes;
+        for (const auto& [key, image] : pictures_)
+            for (const std::string& note : image.notes) notes.push_back(key.first + ": " + note);
+        return notes;
+    }
+
   private:
     bool has(const std::string& file) const { return files_.contains(file); }
+    static bool isData(const std::string& extension) { return extension == ".npy" || extension == ".dds" || extension == ".bin" || extension == ".raw"; }
     std::string path(const std::string& file)
     {
         used_.insert(file);
@@ -126,7 +107,7 @@ class CandidateReader {
         found.buffer.bytes = std::move(arranged.bytes);
         found.given = std::move(arranged.given);
         found.file = file;
-        found.note = std::move(arranged.note);
+        found.note = array.note.empty() ? std::move(arranged.note) : array.note;
         return found;
     }
 
@@ -134,21 +115,48 @@ class CandidateReader {
     {
         const std::string extension = fs::path(entry.file).extension().string();
         if (extension == ".npy") return finish(golden, fromNpy(readNpy(path(entry.file))), entry.how, entry.file);
+        if (extension == ".npz") return mappedNpz(golden, entry);
         if (extension == ".dds") {
             const DdsTexture& texture = dds(entry.file);
             const int own = golden.dds ? static_cast<int>(golden.dds->mip) : levelOf(golden.name);
             const int mip = entry.mip >= 0 ? entry.mip : own;
             if (mip >= static_cast<int>(texture.mips))
                 throw InputError(path(entry.file), "has " + std::to_string(texture.mips) + " mips; " + golden.name + " is to be mip " + std::to_string(mip));
-            return finish(golden, fromTexture(texture, static_cast<std::uint32_t>(mip)), entry.how, entry.file + ", mip " + std::to_string(mip));
+            return finish(golden, fromTexture(golden, texture, static_cast<std::uint32_t>(mip)), entry.how, entry.file + ", mip " + std::to_string(mip));
         }
         if (extension == ".bin" || extension == ".raw")
             return raw(golden, entry.file, entry.dtype.empty() ? golden.dtype : dtypeByName(entry.dtype, entry.file), entry.how);
-        const LayeredImage& image = picture(entry.file);
+        const LayeredImage& image = picture(entry.file, entry.transfer.value_or(transferFor(golden)));
         const ImageLayer* layer = image.find(entry.layer);
         if (!layer && entry.layer.empty() && image.layers.size() == 1) layer = &image.layers.front();
-        if (!layer) throw InputError(path(entry.file), "has no layer \"" + entry.layer + "\"");
+        if (!layer)
+            throw InputError(path(entry.file), "has no layer \"" + entry.layer + "\"; it has " +
+                                                   joined(image.layers, [](const ImageLayer& l) { return l.name.empty() ? "(unnamed)" : l.name; }));
         return finish(golden, fromLayer(image, *layer), entry.how, entry.file);
+    }
+
+    CandidateBuffer mappedNpz(const Buffer& golden, const MapEntry& entry)
+    {
+        const std::vector<std::string>& names = arrays(entry.file);
+        std::string name = entry.layer.empty() && names.size() == 1 ? names.front() : entry.layer.empty() ? golden.name : entry.layer;
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            throw InputError(path(entry.file), "has no array \"" + name + "\"; it has " + joined(names));
+        return finish(golden, fromNpy(readNpz(path(entry.file), name)), entry.how, entry.file + ", " + name);
+    }
+
+    /// An array of the buffer's name in any .npz, or the only one of NAME.npz.
+    std::optional<CandidateBuffer> fromNpz(const Buffer& golden)
+    {
+        for (const std::string& file : files_) {
+            if (fs::path(file).extension() != ".npz" || broken_.contains(file)) continue;
+            const std::vector<std::string>& names = arrays(file);
+            const bool own = file == golden.name + ".npz" && names.size() == 1;
+            if (own || std::find(names.begin(), names.end(), golden.name) != names.end()) {
+                const std::string& name = own ? names.front() : golden.name;
+                return finish(golden, fromNpy(readNpz(path(file), name)), {}, file + ", " + name);
+            }
+        }
+        return {};
     }
 
     /// Nothing but the bytes, in the golden's shape.
@@ -167,23 +175,37 @@ class CandidateReader {
         return finish(golden, array, how, file);
     }
 
-    /// Pictures alone: a file of the buffer's name, or a layer of that name in any file.
-    std::optional<CandidateBuffer> fromExr(const Buffer& golden)
+    /// Pictures alone: a file of the buffer's name, or a layer or channel of that name in any EXR.
+    std::optional<CandidateBuffer> fromPicture(const Buffer& golden)
     {
-        if (golden.axes.size() < 2 || golden.axes[0] != "row") return {};
+        if (golden.axes.size() < 2 || golden.axes[0] != "row" || isGiven(golden.pass)) return {};
         if (const std::string own = golden.name + ".exr"; has(own)) {
-            const LayeredImage& image = picture(own);
+            const LayeredImage& image = picture(own, Transfer::srgb);
             const ImageLayer* layer = image.find(golden.name) ? image.find(golden.name) : image.find("");
             if (!layer && image.layers.size() == 1) layer = &image.layers.front();
             if (!layer) throw InputError(path(own), "has neither an unnamed layer nor one called " + golden.name);
             return finish(golden, fromLayer(image, *layer), {}, own);
         }
-        for (const std::string& file : files_)
-            if (fs::path(file).extension() == ".exr")
-                if (const ImageLayer* layer = picture(file).find(golden.name))
-                    return finish(golden, fromLayer(picture(file), *layer), {}, file + ", layer " + golden.name);
+        for (const char* ending : kPictureEndings)
+            if (const std::string own = golden.name + ending; has(own)) {
+                const LayeredImage& image = picture(own, transferFor(golden));
+                return finish(golden, fromLayer(image, image.layers.front()), {}, own);
+            }
+        for (const std::string& file : files_) {
+            if (fs::path(file).extension() != ".exr" || broken_.contains(file)) continue;
+            const LayeredImage& image = picture(file, Transfer::srgb);
+            if (const ImageLayer* layer = image.find(golden.name)) return finish(golden, fromLayer(image, *layer), {}, file + ", layer " + golden.name);
+            if (!golden.components.empty()) continue;
+            for (const ImageLayer& layer : image.layers)
+                for (std::size_t c = 0; c < layer.channelNames.size(); ++c)
+                    if (layer.name + "." + layer.channelNames[c] == golden.name)
+                        return finish(golden, fromLayer(image, channelOf(layer, c)), {}, file + ", channel " + golden.name);
+        }
         return {};
     }
+
+    /// Integer pictures hold sRGB codes where they are of colours, else numbers.
+    static Transfer transferFor(const Buffer& golden) { return !golden.components.empty() && golden.components[0] == "r" ? Transfer::srgb : Transfer::linear; }
 
     std::vector<std::pair<std::string, std::uint32_t>> ddsPlaces(const Buffer& golden) const
     {
@@ -199,10 +221,24 @@ class CandidateReader {
         const auto known = textures_.find(file);
         return known != textures_.end() ? known->second : textures_.emplace(file, readDds(path(file))).first->second;
     }
-    const LayeredImage& picture(const std::string& file)
+    const LayeredImage& picture(const std::string& file, Transfer transfer)
     {
-        const auto known = pictures_.find(file);
-        return known != pictures_.end() ? known->second : pictures_.emplace(file, readImage(path(file))).first->second;
+        const std::pair key(file, transfer);
+        const auto known = pictures_.find(key);
+        if (known != pictures_.end()) return known->second;
+        broken_.insert(file);
+        LayeredImage image = readImage(path(file), transfer);
+        broken_.erase(file);
+        return pictures_.emplace(key, std::move(image)).first->second;
+    }
+    const std::vector<std::string>& arrays(const std::string& file)
+    {
+        const auto known = arrays_.find(file);
+        if (known != arrays_.end()) return known->second;
+        broken_.insert(file);
+        std::vector<std::string> names = namesInNpz(path(file));
+        broken_.erase(file);
+        return arrays_.emplace(file, std::move(names)).first->second;
     }
 
     std::string folder_;
@@ -210,21 +246,10 @@ class CandidateReader {
     std::vector<MapEntry> map_;
     std::set<std::string> files_, used_;
     std::map<std::string, DdsTexture> textures_;
-    std::map<std::string, LayeredImage> pictures_;
+    std::map<std::pair<std::string, Transfer>, LayeredImage> pictures_;
+    std::map<std::string, std::vector<std::string>> arrays_;
+    std::set<std::string> broken_;  ///< said once: files that may hold any buffer, and cannot be read
 };
-
-std::string unusedNote(const std::string& file, const Capture& golden)
-{
-    const std::string stem = fs::path(file).stem().string();
-    std::string nearest;
-    std::size_t least = std::max<std::size_t>(stem.size() / 3, 2);
-    for (const Buffer& buffer : golden.buffers)
-        if (const std::size_t distance = editDistance(stem, buffer.name); distance <= least && distance > 0) {
-            least = distance - 1;
-            nearest = buffer.name;
-        }
-    return file + " is of no buffer of the golden" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
-}
 
 /// What the candidate's own manifest, when it has one, says otherwise.
 void compareManifests(const std::string& folder, const Capture& golden, std::vector<std::string>& notes)
@@ -240,20 +265,6 @@ void compareManifests(const std::string& folder, const Capture& golden, std::vec
         notes.push_back("its manifest has another setting: " + d.key + "=" + d.b + ", golden " + d.a);
 }
 
-/// Bits of one packing into the other.
-void repack(const Buffer& from, Buffer& to)
-{
-    to.bytes.assign(to.elements() * sizeOf(to.dtype), std::byte{0});
-    const std::vector<std::size_t> extents = extentsOf(to);
-    for (std::size_t bit = 0; bit < valueCount(from); ++bit) {
-        if (decodedValue(from, bit) == 0.0) continue;
-        const std::vector<std::size_t> at = indicesOf(from, bit);
-        if (at[0] >= extents[0] || at[1] >= extents[1] || at[2] >= extents[2]) continue;
-        const std::size_t target = elementAt(to, at);
-        to.bytes[target / 8] |= std::byte(1u << (target & 7));
-    }
-}
-
 }  // namespace
 
 const CandidateBuffer* Candidate::find(const std::string& name) const
@@ -266,32 +277,32 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
 {
     std::vector<MapEntry> map;
     if (!options.map.empty()) map = readCandidateMap(options.map);
-    CandidateReader reader(folder, golden, std::move(map));
+    CandidateReader reader(folder, golden, map);
     Candidate candidate;
     candidate.folder = folder;
     compareManifests(folder, golden, candidate.notes);
     for (const Buffer& buffer : golden.buffers) {
         if (!isAskedFor(options.passes, buffer.pass)) continue;
-        if (std::optional<CandidateBuffer> found = reader.read(buffer)) candidate.buffers.push_back(std::move(*found));
+        try {
+            if (std::optional<CandidateBuffer> found = reader.read(buffer)) candidate.buffers.push_back(std::move(*found));
+        } catch (const InputError& error) {
+            candidate.unreadable.push_back({buffer.name, error.what()});
+        }
     }
+    candidate.nearMisses = nearMisses(golden, reader.namesHeld(), map);
+    candidate.notes.insert(candidate.notes.end(), candidate.nearMisses.begin(), candidate.nearMisses.end());
+    for (const std::string& note : reader.pictureNotes()) candidate.notes.push_back(note);
     if (options.passes.empty())
-        for (const std::string& file : reader.unused()) candidate.notes.push_back(unusedNote(file, golden));
+        for (const std::string& file : reader.unused())
+            if (std::none_of(candidate.nearMisses.begin(), candidate.nearMisses.end(), [&](const std::string& miss) { return miss.starts_with(file + " "); }))
+                candidate.notes.push_back(unusedNote(file, golden));
     return candidate;
 }
 
-Capture layOver(const Capture& golden, const Candidate& candidate)
+const UnreadableBuffer* Candidate::findUnreadable(const std::string& name) const
 {
-    Capture mixed = golden;
-    for (const CandidateBuffer& from : candidate.buffers) findBuffer(mixed.buffers, from.buffer.name)->bytes = from.buffer.bytes;
-    Buffer* rows = findBuffer(mixed.buffers, "voxel.bits");
-    Buffer* bricks = findBuffer(mixed.buffers, "voxel.bricks");
-    if (rows && bricks) {
-        if (candidate.find("voxel.bits"))
-            repack(*rows, *bricks);
-        else if (candidate.find("voxel.bricks"))
-            repack(*bricks, *rows);
-    }
-    return mixed;
+    const auto found = std::find_if(unreadable.begin(), unreadable.end(), [&](const UnreadableBuffer& b) { return b.name == name; });
+    return found == unreadable.end() ? nullptr : &*found;
 }
 
 }  // namespace lrsm

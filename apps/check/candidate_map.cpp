@@ -35,6 +35,13 @@ std::vector<std::size_t> channelsFrom(const JsonReader& in)
     return channels;
 }
 
+Transfer transferFrom(const JsonReader& in)
+{
+    if (in.text() == "linear") return Transfer::linear;
+    if (in.text() != "srgb") in.fail("must be \"linear\" or \"srgb\"");
+    return Transfer::srgb;
+}
+
 MapEntry entryFrom(const std::string& pattern, const JsonReader& in)
 {
     MapEntry entry;
@@ -53,6 +60,8 @@ MapEntry entryFrom(const std::string& pattern, const JsonReader& in)
             entry.mip = static_cast<int>(value.whole(-1, std::numeric_limits<int>::max()));
         else if (key == "dtype")
             entry.dtype = std::string(nameOf(dtypeByName(value.text(), value.path())));
+        else if (key == "transfer")
+            entry.transfer = transferFrom(value);
         else if (key == "axes")
             entry.how.axes = value.texts();
         else if (key == "flip")
@@ -68,7 +77,7 @@ MapEntry entryFrom(const std::string& pattern, const JsonReader& in)
         else if (key == "encoding")
             entry.how.encoding = encodingByName(value.text(), value.path());
         else
-            value.fail("is no key of a map; they are file, layer, mip, dtype, axes, flip, layers, channels, scale, offset, encoding");
+            value.fail("is no key of a map; they are file, layer, mip, dtype, transfer, axes, flip, layers, channels, scale, offset, encoding");
     }
     if (entry.file.empty()) in.fail("has no \"file\"");
     return entry;
@@ -83,6 +92,11 @@ std::vector<MapEntry> readCandidateMap(const std::string& path)
     std::vector<MapEntry> map;
     for (const auto& [key, value] : JsonReader(json, path).members()) map.push_back(entryFrom(key, value));
     return map;
+}
+
+bool matches(const MapEntry& entry, const std::string& name)
+{
+    return entryFor({entry}, name).has_value();
 }
 
 std::optional<MapEntry> entryFor(const std::vector<MapEntry>& map, const std::string& name)

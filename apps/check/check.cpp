@@ -38,7 +38,12 @@ std::vector<CheckedBuffer> inOrder(const Capture& golden, const Candidate& candi
         CheckedBuffer checked;
         checked.golden = &buffer;
         checked.candidate = candidate.find(buffer.name);
-        if (!checked.candidate && isGiven(buffer.pass)) continue;
+        if (const UnreadableBuffer* unreadable = candidate.findUnreadable(buffer.name)) {
+            checked.verdict = Verdict::unreadable;
+            checked.note = unreadable->why;
+        } else if (!checked.candidate && isGiven(buffer.pass)) {
+            continue;
+        }
         buffers.push_back(std::move(checked));
     }
     const auto place = [&](const CheckedBuffer& b) {
@@ -124,6 +129,22 @@ void addHints(const Capture& inputs, std::vector<CheckedBuffer>& buffers)
     }
 }
 
+[[noreturn]] void refuseNothingInCommon(const Capture& golden, const Candidate& candidate)
+{
+    if (!candidate.unreadable.empty()) {
+        const std::size_t more = candidate.unreadable.size() - 1;
+        throw InputError(candidate.unreadable.front().why + (more ? " (" + std::to_string(more) + " more buffers cannot be read, and none can)" : ""));
+    }
+    std::string near;
+    for (const std::string& miss : candidate.nearMisses)
+        if (&miss - candidate.nearMisses.data() < 3) near += "; " + miss;
+    throw InputError(candidate.folder,
+                     "has no buffer in common with the golden" +
+                         (near.empty() ? "; buffers are found by name, as " +
+                                             (golden.buffers.empty() ? std::string("lrsm0.depth.mip0") : golden.buffers.back().name) + ".npy, or by --map"
+                                       : near));
+}
+
 }  // namespace
 
 VerdictName nameOf(Verdict verdict)
@@ -132,6 +153,7 @@ VerdictName nameOf(Verdict verdict)
     case Verdict::ok: return {"ok", "ok"};
     case Verdict::wrong: return {"WRONG", "wrong"};
     case Verdict::inherits: return {"inherits", "inherits"};
+    case Verdict::unreadable: return {"UNREADABLE", "unreadable"};
     case Verdict::missing: break;
     }
     return {"not in candidate", "not_in_candidate"};
@@ -151,11 +173,17 @@ std::size_t CheckReport::count(Verdict verdict) const
 std::string CheckReport::summary() const
 {
     const CheckedBuffer* wrong = firstWrong();
+    const auto buffersAre = [](std::size_t n) { return std::to_string(n) + (n == 1 ? " buffer is" : " buffers are"); };
+    std::string unread;
+    if (const std::size_t n = count(Verdict::unreadable)) {
+        const auto first = std::find_if(buffers.begin(), buffers.end(), [](const CheckedBuffer& b) { return b.verdict == Verdict::unreadable; });
+        unread = "; " + std::to_string(n) + " cannot be read: " + first->note + (n > 1 ? " (and so on)" : "");
+    }
     if (!wrong) {
-        std::string text = std::to_string(count(Verdict::ok) + count(Verdict::inherits)) + " buffers are within their tolerances";
-        if (const std::size_t missing = count(Verdict::missing)) text += "; " + std::to_string(missing) + " are not in the candidate";
+        std::string text = buffersAre(count(Verdict::ok)) + " within " + (count(Verdict::ok) == 1 ? "its tolerance" : "their tolerances");
         if (const std::size_t inherits = count(Verdict::inherits)) text += "; " + std::to_string(inherits) + " differ from the golden as their inputs do";
-        return text;
+        if (const std::size_t missing = count(Verdict::missing)) text += "; " + std::to_string(missing) + " are not in the candidate";
+        return text + unread;
     }
     const Buffer& golden = wrong->expected();
     const BufferComparison& c = wrong->comparison();
@@ -168,7 +196,7 @@ std::string CheckReport::summary() const
     text += " (tolerance " + toleranceText(golden.tolerance) + "); " + std::to_string(c.differing) + " of " + std::to_string(c.elements) + " differ, " +
             std::to_string(c.outside) + " outside";
     if (!wrong->hints.empty()) text += "; hint: " + wrong->hints.front();
-    return text;
+    return text + unread;
 }
 
 void demandBits(Capture& golden)
@@ -183,8 +211,7 @@ CheckReport checkCandidate(const Capture& golden, const Candidate& candidate, co
     report.notes = candidate.notes;
     report.buffers = inOrder(golden, candidate, options);
     if (std::none_of(report.buffers.begin(), report.buffers.end(), [](const CheckedBuffer& b) { return b.candidate; }))
-        throw InputError(candidate.folder, "has no buffer in common with the golden; buffers are found by name, as " +
-                                               (golden.buffers.empty() ? std::string("lrsm0.depth.mip0") : golden.buffers.back().name) + ".npy, or by --map");
+        refuseNothingInCommon(golden, candidate);
     for (CheckedBuffer& checked : report.buffers) {
         if (!checked.candidate) continue;
         checked.againstGolden = compareBuffers(*checked.golden, checked.candidate->buffer, checked.candidate->given);

@@ -11,8 +11,9 @@ namespace lrsm {
 enum class Verdict {
     ok,  ///< within the tolerance of the golden; with fromGolden: of what our pass makes of the candidate's own inputs
     wrong,
-    inherits,  ///< differs from the golden, but is what our pass makes of the candidate's inputs: look upstream
-    missing,   ///< not in the candidate
+    inherits,    ///< differs from the golden, but is what our pass makes of the candidate's inputs: look upstream
+    missing,     ///< not in the candidate
+    unreadable,  ///< there, but no buffer of this shape and type
 };
 /// For people, and in files: "not in candidate", "not_in_candidate".
 struct VerdictName {
@@ -50,7 +51,7 @@ struct CheckReport {
 
     /// nullptr when all is well.
     const CheckedBuffer* firstWrong() const;
-    bool holds() const { return firstWrong() == nullptr; }
+    bool holds() const { return firstWrong() == nullptr && count(Verdict::unreadable) == 0; }
     std::size_t count(Verdict verdict) const;
     /// One line: the first wrong pass, buffer, texel and term, and what it looks like; or that all is within the tolerances.
     std::string summary() const;
@@ -59,7 +60,8 @@ struct CheckReport {
 /// Makes every tolerance "exact": for candidates that this very program made, on another machine or with another compiler.
 void demandBits(Capture& golden);
 
-/// Both must outlive the report. InputError for an unknown pass in `passes`, and when there is no buffer in common.
+/// Both must outlive the report. InputError for an unknown pass in `passes`, and when there is no buffer in common: with why,
+/// and with what is nearly one.
 CheckReport checkCandidate(const Capture& golden, const Candidate& candidate, const CheckOptions& options = {});
 
 }  // namespace lrsm

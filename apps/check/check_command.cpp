@@ -77,7 +77,7 @@ void print(const CheckArguments& options, const CheckReport& report, const Captu
     for (const std::string& note : report.notes) std::cout << "note: " << note << "\n";
     std::cout << "\n" << checkTable(report);
     printInputs(report, inputs);
-    if (!report.holds() && !options.fromGolden)
+    if (report.firstWrong() && !options.fromGolden)
         std::cout << "\nWhat follows a wrong pass is wrong by its inputs: --from-golden judges each pass by the candidate's own.\n";
 }
 
@@ -118,7 +118,8 @@ int runCheck(const CheckArguments& options)
             std::cout << "\n"
                       << options.output << ": report.html, check.json" << (report.holds() ? "" : ", expected, actual and difference of what is wrong") << "\n";
     }
-    return report.holds() ? 0 : 1;
+    if (report.firstWrong()) return 1;
+    return report.holds() ? 0 : 2;
 }
 
 }  // namespace
@@ -130,7 +131,7 @@ Command addCheck(CLI::App& program)
     const auto options = std::make_shared<CheckArguments>();
     addRunOptions(*parser, *options);
     parser->add_option("GOLDEN", options->golden, "folder that `lrsm capture` wrote")->required();
-    parser->add_option("CANDIDATE", options->candidate, "folder with some or all of the buffers, as .npy, .dds, .exr or raw .bin")->required();
+    parser->add_option("CANDIDATE", options->candidate, "folder with some or all of the buffers, as .npy, .npz, .dds, .exr, .png or raw .bin")->required();
     parser->add_option("-o,--output", options->output, "folder for report.html, check.json, and expected, actual and difference of what is wrong");
     parser->add_option("--map", options->map, "JSON that says where the candidate's buffers are, and how they are stored");
     parser->add_flag("--from-golden", options->fromGolden, "judge each pass by what ours makes of the candidate's own inputs");

@@ -20,7 +20,7 @@ std::string shortShare(std::size_t count, std::size_t of)
 
 bool quiet(const CheckedBuffer& b)
 {
-    return b.verdict == Verdict::missing || (b.verdict == Verdict::ok && b.comparison().differing == 0);
+    return !b.candidate || (b.verdict == Verdict::ok && b.comparison().differing == 0);
 }
 
 /// Mips of one texture that say the same.
@@ -33,7 +33,7 @@ std::vector<std::string> rowOf(const CheckedBuffer& b, const std::string& name)
 {
     const BufferComparison& c = b.comparison();
     const std::string mark = b.verdict == Verdict::wrong ? "!" : "";
-    if (b.verdict == Verdict::missing) return {b.golden->pass, name, "", "", "", "", "", std::string(nameOf(b.verdict).text)};
+    if (!b.candidate) return {(b.verdict == Verdict::unreadable ? "!" : "") + b.golden->pass, name, "", "", "", "", "", std::string(nameOf(b.verdict).text)};
     const std::string where = c.worst ? placeText(*b.golden, c.worst->element) : "";
     return {mark + b.golden->pass,
             name,
@@ -53,15 +53,15 @@ ReportTable tableOf(const CheckReport& report)
         if (done[i]) continue;
         const CheckedBuffer& first = report.buffers[i];
         std::string name = first.golden->name, last;
-        std::size_t elements = first.verdict == Verdict::missing ? 0 : first.comparison().elements;
+        std::size_t elements = !first.candidate ? 0 : first.comparison().elements;
         for (std::size_t j = i + 1; j < report.buffers.size(); ++j)
             if (!done[j] && joins(first, report.buffers[j])) {
                 done[j] = true;
                 last = std::to_string(levelOf(report.buffers[j].golden->name));
-                elements += first.verdict == Verdict::missing ? 0 : report.buffers[j].comparison().elements;
+                elements += !first.candidate ? 0 : report.buffers[j].comparison().elements;
             }
         std::vector<std::string> row = rowOf(first, last.empty() ? name : name + "-" + last);
-        if (!last.empty() && first.verdict != Verdict::missing) row[2] = std::to_string(elements);
+        if (!last.empty() && first.candidate) row[2] = std::to_string(elements);
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -120,6 +120,7 @@ std::string testCase(const CheckedBuffer& b)
     std::string xml = "    <testcase classname=\"" + xmlText(b.golden->pass) + "\" name=\"" + xmlText(b.golden->name) + "\"";
     if (b.verdict == Verdict::wrong)
         return xml + ">\n      <failure message=\"" + xmlText(b.comparison().why) + "\">" + xmlText(failureText(b)) + "</failure>\n    </testcase>\n";
+    if (b.verdict == Verdict::unreadable) return xml + ">\n      <error message=\"" + xmlText(b.note) + "\"/>\n    </testcase>\n";
     if (b.verdict == Verdict::missing) return xml + ">\n      <skipped message=\"not in the candidate\"/>\n    </testcase>\n";
     if (b.verdict == Verdict::inherits) return xml + ">\n      <system-out>differs from the golden as its inputs do</system-out>\n    </testcase>\n";
     return xml + "/>\n";
@@ -130,7 +131,10 @@ std::string testCase(const CheckedBuffer& b)
 std::string checkTable(const CheckReport& report)
 {
     std::string text = textTable(tableOf(report));
+    std::string said;
     for (const CheckedBuffer& b : report.buffers) {
+        // A file that holds many buffers is unreadable once.
+        if (b.verdict == Verdict::unreadable && b.note != said) text += "\n" + b.golden->name + " cannot be read: " + (said = b.note) + "\n";
         if (b.verdict != Verdict::wrong) continue;
         text += "\n" + b.golden->name + ": " + b.comparison().why + "\n";
         if (!b.where.empty()) text += "  where: " + b.where + "\n";
@@ -164,22 +168,24 @@ std::string checkJUnit(const CheckReport& report, const std::string& name)
 {
     struct Suite {
         std::string pass, cases;
-        std::size_t tests = 0, failures = 0, skipped = 0;
+        std::size_t tests = 0, failures = 0, errors = 0, skipped = 0;
     };
     std::vector<Suite> suites;
     for (const CheckedBuffer& b : report.buffers) {
-        if (suites.empty() || suites.back().pass != b.golden->pass) suites.push_back({b.golden->pass, "", 0, 0, 0});
+        if (suites.empty() || suites.back().pass != b.golden->pass) suites.push_back({b.golden->pass, "", 0, 0, 0, 0});
         Suite& suite = suites.back();
         ++suite.tests;
         suite.failures += b.verdict == Verdict::wrong ? 1 : 0;
+        suite.errors += b.verdict == Verdict::unreadable ? 1 : 0;
         suite.skipped += b.verdict == Verdict::missing ? 1 : 0;
         suite.cases += testCase(b);
     }
     std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"" + xmlText(name) + "\" tests=\"" +
-                      std::to_string(report.buffers.size()) + "\" failures=\"" + std::to_string(report.count(Verdict::wrong)) + "\">\n";
+                      std::to_string(report.buffers.size()) + "\" failures=\"" + std::to_string(report.count(Verdict::wrong)) + "\" errors=\"" +
+                      std::to_string(report.count(Verdict::unreadable)) + "\" skipped=\"" + std::to_string(report.count(Verdict::missing)) + "\">\n";
     for (const Suite& suite : suites)
         xml += "  <testsuite name=\"" + xmlText(suite.pass) + "\" tests=\"" + std::to_string(suite.tests) + "\" failures=\"" + std::to_string(suite.failures) +
-               "\" skipped=\"" + std::to_string(suite.skipped) + "\">\n" + suite.cases + "  </testsuite>\n";
+               "\" errors=\"" + std::to_string(suite.errors) + "\" skipped=\"" + std::to_string(suite.skipped) + "\">\n" + suite.cases + "  </testsuite>\n";
     return xml + "</testsuites>\n";
 }
 

@@ -162,6 +162,8 @@ std::vector<Gate> parseGates(const CompareArguments& options)
             for (const MetricInfo& metric : metricInfos())
                 if (metric.name == name) gate.metric = &metric;
             if (!gate.metric) throw InputError(option, "no metric " + name + "; there are " + joined(metricInfos(), &MetricInfo::name));
+            if (above && gate.metric->largerIsBetter)
+                throw InputError(option, "would fail the better picture: " + name + " grows with likeness; say --fail-below " + text);
             gates.push_back(gate);
         }
     return gates;
@@ -210,6 +212,22 @@ void printComparison(const LayerComparison& c)
     std::printf("\n");
 }
 
+/// What the reader is told of how the pictures were read.
+std::vector<std::string> notesOf(const Side& test, const Side& reference, const std::vector<std::string>& layers)
+{
+    std::vector<std::string> notes;
+    for (const Side* side : {&test, &reference}) {
+        for (const std::string& note : side->image.notes) notes.push_back(side->path + ": " + note);
+        for (const std::string& name : layers) {
+            const ImageLayer* layer = side->image.find(name);
+            const auto& channels = layer->channelNames;
+            if (channels.size() > 1 && std::find(channels.begin(), channels.end(), "A") != channels.end())
+                notes.push_back(side->path + ": layer " + (name.empty() ? "RGB" : name) + " has an alpha; colours are compared as stored, whatever it says");
+        }
+    }
+    return notes;
+}
+
 std::string metadataText(const LayeredImage& image)
 {
     std::string text;
@@ -228,6 +246,7 @@ void writeResults(const CompareArguments& options, const Side& test, const Side&
     const auto& failed = json["failures"];
     report.summary = failed.empty() ? "No limit was passed." : "Failed: ";
     for (const auto& line : failed) report.summary += line.get<std::string>() + ". ";
+    for (const auto& note : json["notes"]) report.summary += " Note: " + note.get<std::string>() + ".";
     for (const LayerComparison& c : comparisons) {
         report.layers.push_back(comparisonSection(c));
         for (const NamedPicture& picture : comparisonPictures(c))
@@ -260,20 +279,25 @@ int runCompare(const CompareArguments& options)
                  {"reference", reference.path},
                  {"size", {test.image.width, test.image.height}},
                  {"pixels_per_degree", settings.pixelsPerDegree},
+                 {"notes", Json::array()},
                  {"layers", Json::array()},
                  {"failures", Json::array()}};
     const PixelMask flat = flatPixels(test, reference);
-    for (const std::string& layer : chosenLayers(options, test, reference)) {
+    const std::vector<std::string> layers = chosenLayers(options, test, reference);
+    json["notes"] = notesOf(test, reference, layers);
+    for (const std::string& layer : layers) {
         const Image<Vec3> referencePicture = rgbLayer(reference.image, layer, reference.path), testPicture = rgbLayer(test.image, layer, test.path);
         comparisons.push_back(compareLayer(layer, referencePicture, testPicture, varianceOf(layer, test, reference), seen, settings));
         if (!flat.empty()) comparisons.back().band = bandError(referencePicture, testPicture, flat);
         json["layers"].push_back(comparisonJson(comparisons.back()));
         for (const std::string& line : failures(gates, comparisons.back(), options.allowNan)) json["failures"].push_back(line);
     }
-    if (options.json)
+    if (options.json) {
         std::cout << jsonText(json);
-    else if (!options.quiet)
+    } else if (!options.quiet) {
+        for (const auto& note : json["notes"]) std::printf("note: %s\n", note.get<std::string>().c_str());
         for (const LayerComparison& c : comparisons) printComparison(c);
+    }
     std::fflush(stdout);
     for (const Gate& gate : gates)
         if (std::none_of(comparisons.begin(), comparisons.end(), [&](const LayerComparison& c) { return gate.metric->value(c).has_value(); }))

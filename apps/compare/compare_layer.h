@@ -47,6 +47,7 @@ LayerComparison compareLayer(const std::string& layer, const Image<Vec3>& refere
 struct MetricInfo {
     std::string name, meaning;
     std::optional<double> (*value)(const LayerComparison& comparison);
+    bool largerIsBetter = false;
 };
 const std::vector<MetricInfo>& metricInfos();
 

@@ -2,8 +2,8 @@
 
 #include "conetrace/frame/cone_batch.h"
 #include "conetrace/frame/cones.h"
-#include "conetrace/lrsm/gather_pixel.h"
 #include "conetrace/frame/tiles.h"
+#include "conetrace/lrsm/gather_pixel.h"
 #include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/hit_radiance.h"
 #include "voxel/voxel_ray.h"

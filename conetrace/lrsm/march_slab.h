@@ -154,7 +154,7 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
     const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
 
     ConeResult result;
-    Vec3 depth(0.0f);         // F so far
+    Vec3 depth(0.0f);  // F so far
     scratch.opticalDepth.resize(schedule.edges.size());
     if (!scratch.opticalDepth.empty()) scratch.opticalDepth[0] = depth;
     bool wasOccupied = true;  // the first segments may touch what the receiver stands on

@@ -5,6 +5,7 @@
 #include "core/imageio/display.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,14 +19,21 @@ struct ImageLayer {
     std::string name;                       ///< "" is what viewers show by default
     std::vector<std::string> channelNames;  ///< without the layer's name
     std::vector<float> values;              ///< width * height * channelNames.size()
+    struct Integers {
+        std::size_t channel = 0;
+        std::vector<std::uint32_t> values;  ///< width * height
+    };
+    std::vector<Integers> integers = {};  ///< channels that an EXR stores as whole numbers, exactly; `values` has them rounded to float
+    std::string part = {};                ///< of a multi-part EXR
 };
 
 struct LayeredImage {
     int width = 0, height = 0;
     std::vector<ImageLayer> layers;
     std::vector<std::pair<std::string, std::string>> metadata;  ///< EXR only; keys in lower case begin with "lrsm:"
+    std::vector<std::string> notes = {};                        ///< what reading it changed or left out, a sentence each, without the file's name
 
-    /// nullptr when there is none of this name.
+    /// By the layer's name, else by its part's where the layer has none. nullptr when there is none.
     const ImageLayer* find(const std::string& name) const;
 };
 
@@ -44,8 +52,15 @@ std::vector<std::byte> encodeExr(const LayeredImage& image);
 /// 8-bit RGB PNG, values as they are (already sRGB encoded).
 std::vector<std::byte> encodePng(const Image<Rgb8>& picture);
 
-/// EXR (first part, layers by channel name) or PNG and whatever else OpenImageIO reads; integer colour is decoded from sRGB to linear.
-/// InputError when it cannot be opened, is not a picture, or is larger than 2^28 pixels.
-LayeredImage readImage(const std::string& path);
+/// What integer pictures (PNG) hold.
+enum class Transfer {
+    srgb,    ///< sRGB codes: decoded to linear
+    linear,  ///< numbers: code / (2^n - 1), as UNORM textures
+};
+
+/// EXR or PNG and whatever else OpenImageIO reads. Of an EXR: every flat part, layers by channel name, else by part; the display window: what lies
+/// outside is cropped, what is missing is 0. Colours as they are stored, whatever alpha says. `transfer` is of integer pictures; floats are taken as
+/// they are. InputError when it cannot be opened, is not a picture, or is larger than 2^28 pixels.
+LayeredImage readImage(const std::string& path, Transfer transfer = Transfer::srgb);
 
 }  // namespace lrsm

@@ -170,6 +170,7 @@ TEST_CASE("program: compare says in one line what does not fit", "[apps][compare
         std::string arguments, word;
     };
     for (const Case& c : {Case{"a b", "24x16"}, Case{"a a --layer shadow", "shadow"}, Case{"a missing", "missing"}, Case{"a a --fail-above beauty=1", "beauty"},
+                          Case{"a a --fail-above psnr=30", "--fail-below psnr=30"}, Case{"a a --fail-above ssim=0.9", "--fail-below"},
                           Case{"a a --fail-above rmse", "metric=value"}, Case{"a a --regions 0x4", "--regions"}, Case{"a a --fail-above zrms=1", "zrms"},
                           Case{"a a --flip-exposures 3", "--flip-exposures"}}) {
         const Outcome outcome = box.run("compare " + c.arguments + " --quiet");

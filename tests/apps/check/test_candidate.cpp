@@ -1,6 +1,8 @@
 #include "apps/capture/capture_files.h"
+#include "apps/capture/pictures.h"
 #include "apps/check/candidate.h"
 #include "apps/check/check.h"
+#include "apps/check/check_report.h"
 #include "core/base/errors.h"
 #include "core/imageio/image_io.h"
 #include "tests/apps/capture/capture_fixture.h"
@@ -191,7 +193,10 @@ TEST_CASE("candidate: the map renames, reorders, flips and rescales", "[capture]
     options.map = map;
     options.passes = {"gbuffer", "lrsm 0"};
     // Mips 3 and higher have no file: the map promised one.
-    CHECK(mentions(refusal([&] { (void)readCandidate(scratch.path("c"), sharedGolden(), options); }), "rad_3.npy"));
+    const Candidate incomplete = readCandidate(scratch.path("c"), sharedGolden(), options);
+    REQUIRE(incomplete.findUnreadable("lrsm0.radiance.mip3"));
+    CHECK(mentions(incomplete.findUnreadable("lrsm0.radiance.mip3")->why, "rad_3.npy"));
+    CHECK(incomplete.find("lrsm0.radiance.mip2"));
     for (std::size_t mip = 3; sharedGolden().find("lrsm0.radiance.mip" + std::to_string(mip)); ++mip) {
         const Buffer& b = sharedGolden().at("lrsm0.radiance.mip" + std::to_string(mip));
         std::vector<std::byte> reversed;
@@ -213,7 +218,10 @@ TEST_CASE("candidate: malformed files and maps are one line that names them", "[
     const auto refused = [&](const std::string& map = {}) {
         CandidateOptions options;
         options.map = map;
-        return refusal([&] { (void)readCandidate(scratch.path("c"), sharedGolden(), options); });
+        return refusal([&] {
+            const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden(), options);
+            if (!candidate.unreadable.empty()) throw InputError(candidate.unreadable.front().why);
+        });
     };
     const std::vector<std::byte> good = encodeNpy(depth.dtype, depth.shape, depth.bytes);
     SECTION("no folder")
@@ -238,7 +246,7 @@ TEST_CASE("candidate: malformed files and maps are one line that names them", "[
     SECTION("rows and columns exchanged")
     {
         writeNpy(scratch, "gbuffer.depth.npy", Dtype::f4, {depth.shape[1], depth.shape[0]}, depth.bytes);
-        CHECK(mentions(refused(), "where gbuffer.depth is"));
+        CHECK(mentions(refused(), R"(it looks like {"axes": ["column", "row"]})"));
     }
     SECTION("codes of another width")
     {
@@ -285,6 +293,7 @@ TEST_CASE("candidate: malformed files and maps are one line that names them", "[
             {R"({"gbuffer.depth": {"file": "gbuffer.depth.npy", "layers": [1, 2]}})", "layers"},
             {R"({"gbuffer.depth": {"file": "gbuffer.depth.npy", "scale": "x"}})", "must be a number"},
             {R"({"gbuffer.depth": {"file": "gbuffer.depth.npy", "encoding": "snorm"}})", "snorm"},
+            {R"({"gbuffer.depth": {"file": "gbuffer.depth.npy", "transfer": "gamma"}})", "\"linear\" or \"srgb\""},
         }));
         CAPTURE(c.map);
         CHECK(mentions(refused(scratch.write("map.json", c.map)), c.message));
@@ -300,6 +309,129 @@ TEST_CASE("candidate: files that are of no buffer are mentioned, with what they 
     const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden());
     REQUIRE(candidate.notes.size() == 1);
     CHECK(mentions(candidate.notes[0], "did you mean gbuffer.normal?"));
+}
+
+TEST_CASE("candidate: one that has nothing in common is told what it nearly has", "[capture][candidate]")
+{
+    const ScratchFolder scratch;
+    const Buffer& depth = sharedGolden().at("gbuffer.depth");
+    const auto told = [&](const CandidateOptions& options = {}) {
+        const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden(), options);
+        return refusal([&] { (void)checkCandidate(sharedGolden(), candidate); });
+    };
+    SECTION("case")
+    {
+        writeNpy(scratch, "GBuffer.Depth.npy", depth.dtype, depth.shape, depth.bytes);
+        CHECK(mentions(told(), "GBuffer.Depth.npy is of no buffer of the golden; did you mean gbuffer.depth? (names are told apart by case)"));
+    }
+    SECTION("an underscore, as a layer")
+    {
+        LayeredImage image;
+        addLayer(image, "gbuffer_depth", Image<float>(int(depth.shape[1]), int(depth.shape[0])));
+        scratch.write("c/all.exr", viewOf(encodeExr(image)));
+        CHECK(mentions(told(), "all.exr, layer gbuffer_depth is of no buffer of the golden; did you mean gbuffer.depth?"));
+    }
+    SECTION("a key of the map")
+    {
+        writeNpy(scratch, "d.npy", depth.dtype, depth.shape, depth.bytes);
+        CandidateOptions options;
+        options.map = scratch.write("map.json", R"({"gbuffer.Depth": "d.npy"})");
+        CHECK(mentions(told(options), "the map's key \"gbuffer.Depth\" is of no buffer of the golden; did you mean gbuffer.depth?"));
+    }
+    SECTION("components first")
+    {
+        const Buffer& normal = sharedGolden().at("gbuffer.normal");
+        writeNpy(scratch, "gbuffer.normal.npy", normal.dtype, {3, normal.shape[0], normal.shape[1]}, normal.bytes);
+        CHECK(mentions(told(), R"(it looks like {"axes": ["component", "row", "column"]})"));
+    }
+}
+
+TEST_CASE("candidate: what cannot be read is listed, and the rest is judged", "[capture][candidate]")
+{
+    const ScratchFolder scratch;
+    writeNpy(scratch, sharedGolden().at("gbuffer.depth"));
+    scratch.write("c/gbuffer.albedo.npy", "hello");
+    scratch.write("c/lrsm0.depth.dds", "hello");
+    const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden());
+    const CheckReport report = checkCandidate(sharedGolden(), candidate);
+    const std::size_t mips = candidate.unreadable.size() - 1;
+    CHECK(report.count(Verdict::ok) == 1);
+    CHECK(report.count(Verdict::unreadable) == 1 + mips);
+    CHECK_FALSE(report.holds());
+    CHECK(report.firstWrong() == nullptr);
+    CHECK(report.summary().starts_with("1 buffer is within its tolerance; "));
+    CHECK(mentions(report.summary(), "; " + std::to_string(1 + mips) + " cannot be read: "));
+    const std::string xml = checkJUnit(report, "t");
+    CHECK(mentions(xml, "errors=\"" + std::to_string(1 + mips) + "\""));
+    // Every count is of the same buffers.
+    std::size_t all = 0;
+    for (const Verdict v : {Verdict::ok, Verdict::wrong, Verdict::inherits, Verdict::missing, Verdict::unreadable}) all += report.count(v);
+    CHECK(all == report.buffers.size());
+    CHECK(mentions(xml, "tests=\"" + std::to_string(all) + "\""));
+}
+
+TEST_CASE("candidate: booleans, integers of any width, typeless and packed textures, pictures", "[capture][candidate]")
+{
+    const ScratchFolder scratch;
+    const Buffer& bits = sharedGolden().at("voxel.bits");
+    std::vector<std::uint8_t> voxels;
+    for (const float v : floatsFrom(bits)) voxels.push_back(v != 0.0f ? 1 : 0);
+    const std::size_t n = bits.shape[0];
+    writeNpy(scratch, "voxel.bits.npy", Dtype::b1, {n, n, n}, bytesOf(voxels));
+    const Buffer& bricks = sharedGolden().at("voxel.bricks");
+    writeNpy(scratch, "voxel.bricks.npy", Dtype::i8, bricks.shape, bricks.bytes);
+    std::vector<std::int64_t> ids, codes;
+    for (const float v : floatsFrom(sharedGolden().at("gbuffer.object_id"))) ids.push_back(std::int64_t(v));
+    writeNpy(scratch, "gbuffer.object_id.npy", Dtype::i8, sharedGolden().at("gbuffer.object_id").shape, bytesOf(ids));
+    // Codes of a UNORM16 as torch has them.
+    const Buffer& depth = sharedGolden().at("lrsm0.depth.mip0");
+    for (const std::uint16_t code : depth.as<std::uint16_t>()) codes.push_back(code);
+    writeNpy(scratch, depth.name + ".npy", Dtype::i8, depth.shape, bytesOf(codes));
+    const auto dds = [&](const Buffer& b, std::uint32_t format, std::uint32_t layers) {
+        DdsTexture texture{
+            DxgiFormat::R32_FLOAT, std::uint32_t(b.shape[b.shape.size() - 2]), std::uint32_t(b.shape[b.shape.size() - 3]), 1, 1, layers, false, {}};
+        texture.layout = layoutOfDxgi(format, "test");
+        texture.texels = b.bytes;
+        std::vector<std::byte> file = encodeDds([&] {
+            DdsTexture same = texture;
+            same.layout = layoutOfDxgi(format, "test");
+            return same;
+        }());
+        std::memcpy(file.data() + 4 * 32, &format, 4);
+        scratch.write("c/" + b.name + ".dds", viewOf(file));
+    };
+    dds(sharedGolden().at("gbuffer.normal"), 6, 1);    // R32G32B32_FLOAT
+    dds(sharedGolden().at("gbuffer.position"), 5, 1);  // R32G32B32_TYPELESS
+    const Buffer& radiance = sharedGolden().at("lrsm0.radiance.mip1");
+    dds(radiance, 9, std::uint32_t(radiance.shape[0]));  // R16G16B16A16_TYPELESS: halves, as the golden
+    const Buffer& normal = sharedGolden().at("lrsm0.depth.mip1");
+    dds(normal, 12, std::uint32_t(normal.shape[0]));  // R16G16B16A16_UINT: codes, as the golden's
+    requireSame(scratch, {"voxel.bits", "voxel.bricks", "gbuffer.object_id", depth.name, "gbuffer.normal", "gbuffer.position", radiance.name, normal.name});
+}
+
+TEST_CASE("candidate: a capture's own pictures, and a PNG of numbers", "[capture][candidate]")
+{
+    const ScratchFolder scratch;
+    OutputFolder folder(scratch.path("c"));
+    writePictures(folder, sharedGolden());
+    folder.commit();
+    const Candidate candidate = readCandidate(scratch.path("c"), sharedGolden());
+    CHECK(candidate.unreadable.empty());
+    CHECK(candidate.find("composite.combined"));
+    CHECK(candidate.find("rsm0.depth"));
+    CHECK(checkCandidate(sharedGolden(), candidate).holds());
+
+    const Buffer& normal = sharedGolden().at("gbuffer.normal");
+    Image<Rgb8> picture(int(normal.shape[1]), int(normal.shape[0]), {0, 51, 255});
+    scratch.write("p/n.png", viewOf(encodePng(picture)));
+    CandidateOptions options;
+    options.map = scratch.write("map.json", R"({"gbuffer.normal": {"file": "n.png", "scale": 2, "offset": -1}})");
+    CHECK(readCandidate(scratch.path("p"), sharedGolden(), options).find("gbuffer.normal")->given[1] == Approx(-0.6));
+    options.map = scratch.write("map.json", R"({"gbuffer.normal": {"file": "n.png", "transfer": "srgb"}})");
+    CHECK(readCandidate(scratch.path("p"), sharedGolden(), options).find("gbuffer.normal")->buffer.as<float>()[1] == Approx(0.0331048f));
+    // Colours are sRGB unless the map says otherwise.
+    options.map = scratch.write("map.json", R"({"gbuffer.albedo": {"file": "n.png", "transfer": "linear"}})");
+    CHECK(readCandidate(scratch.path("p"), sharedGolden(), options).find("gbuffer.albedo")->buffer.as<float>()[1] == Approx(0.2f));
 }
 
 TEST_CASE("candidate: voxels in one packing are laid over both", "[capture][candidate]")

@@ -5,7 +5,9 @@
 #include "core/base/output_folder.h"
 
 #include "catch.h"
+#include "scratch.h"
 
+#include <OpenImageIO/imageio.h>
 #include <unistd.h>
 #include <bit>
 #include <cmath>
@@ -151,4 +153,100 @@ TEST_CASE("display: false colours run from end to end, grow in lightness, and cl
     CHECK(signedFalseColor(Image<float>(1, 1, 0.0f), 1.0f).at(0, 0) == Rgb8{247, 247, 247});
     CHECK(falseColor(Image<float>(1, 1, std::nanf("")), 0.0f, 1.0f).at(0, 0) == Rgb8{255, 0, 255});
     CHECK(normalColor(Image<Vec3>(1, 1, Vec3(0, 0, 1))).at(0, 0) == Rgb8{128, 128, 255});
+}
+
+namespace {
+
+struct PartToWrite {
+    OIIO::ImageSpec spec;
+    std::vector<float> pixels;
+};
+
+OIIO::ImageSpec specOf(int width, int height, std::vector<std::string> channels, const std::string& name = "")
+{
+    OIIO::ImageSpec spec(width, height, int(channels.size()), OIIO::TypeFloat);
+    spec.channelnames = std::move(channels);
+    if (!name.empty()) spec.attribute("oiio:subimagename", name);
+    return spec;
+}
+
+void writeParts(const std::string& path, const std::vector<PartToWrite>& parts)
+{
+    const auto output = OIIO::ImageOutput::create(path);
+    std::vector<OIIO::ImageSpec> specs;
+    for (const PartToWrite& part : parts) specs.push_back(part.spec);
+    REQUIRE(output->open(path, int(specs.size()), specs.data()));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (i > 0) REQUIRE(output->open(path, specs[i], OIIO::ImageOutput::AppendSubimage));
+        REQUIRE(output->write_image(OIIO::TypeFloat, parts[i].pixels.data()));
+    }
+    REQUIRE(output->close());
+}
+
+}  // namespace
+
+TEST_CASE("image io: every part of an EXR, layers by channel or by part", "[imageio]")
+{
+    ScratchFolder scratch;
+    writeParts(scratch.path("a.exr"), {{specOf(2, 1, {"R", "G", "B"}, "beauty"), {1, 2, 3, 4, 5, 6}},
+                                       {specOf(2, 1, {"gbuffer.normal.R", "gbuffer.normal.G", "gbuffer.normal.B"}, "second"), {7, 8, 9, 10, 11, 12}},
+                                       {specOf(2, 1, {"Z"}, "gbuffer.depth"), {13, 14}}});
+    const LayeredImage image = readImage(scratch.path("a.exr"));
+    REQUIRE(image.layers.size() == 3);
+    CHECK(image.notes.empty());
+    CHECK(image.find("")->values == std::vector<float>{1, 2, 3, 4, 5, 6});
+    CHECK(image.find("beauty") == image.find(""));
+    CHECK(image.find("gbuffer.normal")->values == std::vector<float>{7, 8, 9, 10, 11, 12});
+    CHECK(image.find("gbuffer.depth")->values == std::vector<float>{13, 14});
+}
+
+TEST_CASE("image io: integer channels of an EXR keep every bit, beside floats too", "[imageio]")
+{
+    ScratchFolder scratch;
+    OIIO::ImageSpec spec = specOf(2, 1, {"Z", "id"});
+    spec.channelformats = {OIIO::TypeFloat, OIIO::TypeUInt32};
+    const struct {
+        float depth = 0.0f;
+        std::uint32_t id = 0;
+    } pixels[] = {{0.5f, 4294967295u}, {2.0f, 16777217u}};
+    const auto output = OIIO::ImageOutput::create(scratch.path("a.exr"));
+    REQUIRE(output->open(scratch.path("a.exr"), spec));
+    REQUIRE(output->write_image(OIIO::TypeUnknown, pixels));
+    REQUIRE(output->close());
+    const LayeredImage image = readImage(scratch.path("a.exr"));
+    REQUIRE(image.layers.size() == 1);
+    REQUIRE(image.layers[0].integers.size() == 1);
+    const auto& whole = image.layers[0].integers[0];
+    CHECK(image.layers[0].channelNames[whole.channel] == "id");
+    CHECK(whole.values == std::vector<std::uint32_t>{4294967295u, 16777217u});
+    CHECK(image.layers[0].values[1 - whole.channel] == 0.5f);
+}
+
+TEST_CASE("image io: the display window is the picture: overscan is cropped, what is missing is black, both are said", "[imageio]")
+{
+    ScratchFolder scratch;
+    // Data 3x2 at (-1, 1) in a display of 4x2 at (0, 0): of its columns two are seen, of its rows the first alone, as the picture's last.
+    OIIO::ImageSpec spec = specOf(3, 2, {"Y"});
+    spec.x = -1, spec.y = 1;
+    spec.full_x = spec.full_y = 0, spec.full_width = 4, spec.full_height = 2;
+    writeParts(scratch.path("a.exr"), {{spec, {1, 2, 3, 4, 5, 6}}});
+    const LayeredImage image = readImage(scratch.path("a.exr"));
+    CHECK((image.width == 4 && image.height == 2));
+    CHECK(image.layers[0].values == std::vector<float>{0, 0, 0, 0, 2, 3, 0, 0});
+    REQUIRE(image.notes.size() == 1);
+    CHECK(image.notes[0] == "its data window is 3x2 at (-1, 1), its display window 4x2 at (0, 0): what lies outside is cropped, what is missing is black");
+}
+
+TEST_CASE("image io: colours of a PNG with alpha are those stored, as sRGB or as numbers", "[imageio]")
+{
+    ScratchFolder scratch;
+    OIIO::ImageSpec spec(1, 1, 4, OIIO::TypeUInt8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    const std::uint8_t pixel[] = {255, 51, 188, 0};
+    const auto output = OIIO::ImageOutput::create(scratch.path("a.png"));
+    REQUIRE(output->open(scratch.path("a.png"), spec));
+    REQUIRE(output->write_image(OIIO::TypeUInt8, pixel));
+    REQUIRE(output->close());
+    CHECK(readImage(scratch.path("a.png"), Transfer::linear).layers[0].values == std::vector<float>{1.0f, 0.2f, 188.0f / 255.0f, 0.0f});
+    CHECK(readImage(scratch.path("a.png")).layers[0].values[2] == Approx(0.502886458f).epsilon(1e-5));
 }
