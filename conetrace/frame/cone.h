@@ -49,6 +49,8 @@ inline Counters countersOf(const ConeCounts& counts)
 
 /// Widths of its voxel that a trilinear lookup reaches from its centre: a tent of one width, of voxels that are themselves one wide.
 inline constexpr float kKernelReachTaps = 1.5f;
+/// The same of a lookup blended with the level above, whose voxels are twice as wide.
+inline constexpr float kBlendedReachTaps = 2.0f * kKernelReachTaps;
 
 /// Transmittance from optical depth F: linear (a wall covers each ray once) or exponential (randomly placed surfaces). Error <= kTransmittanceMaxError.
 inline constexpr float kTransmittanceMaxError = 4e-7f;

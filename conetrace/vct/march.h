@@ -57,7 +57,7 @@ ConeResult marchRadiance(const VctWorld& world, const ConeRay& ray, const MarchS
     float transmittance = 1.0f;
     ++counts.cones;
     for (const MarchStep& step : schedule.steps) {
-        if (step.middle - kKernelReachTaps * step.tapWidth > exit) break;
+        if (step.middle - kBlendedReachTaps * step.tapWidth > exit) break;
         ++counts.steps;
         ++counts.voxelTaps;
         const Vec3 offset = ray.direction * step.middle + ray.receiverNormal * (settings.push * (0.5f * step.diameter));
