@@ -159,7 +159,7 @@ TEST_CASE("render: every file and layer is there, frame.json repeats the frame, 
     }
 }
 
-TEST_CASE("render --radiance: named in frame.json; rays build no voxels", "[apps][split]")
+TEST_CASE("render --radiance: named in frame.json, rays build no voxels", "[apps][split]")
 {
     const Sandbox box;
     REQUIRE(box.run("render cornell-box -o rays --set visibility=rays" + kTiny).code == 0);

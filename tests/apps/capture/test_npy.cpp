@@ -194,7 +194,7 @@ TEST_CASE("npy: any type, byte order, axis order and version gives the same arra
     CHECK(array.bytes == inC);
 }
 
-TEST_CASE("npz: arrays of zips that Python wrote, stored and deflated; damaged ones are one line", "[capture][npy]")
+TEST_CASE("npz: arrays of zips that Python wrote, stored and deflated, damaged ones are one line", "[capture][npy]")
 {
     LRSM_NEED_PYTHON(python, "zipfile");
     ScratchFolder scratch;
