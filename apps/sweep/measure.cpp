@@ -181,7 +181,7 @@ Settings Calibration::settings()
                      .transmittance = TransmittanceModel::linear,
                      .voxelLevelBias = -2.0f,
                      .filterFraction = FilterFraction::exact};
-    s.cones.gather = {.emitterDelayTaps = 3.0f,
+    s.cones.gather = {.emitterDelayTaps = 2.0f,
                       .emitterDelayVoxels = 0.75f,
                       .emitterSlantCap = 0.5f,
                       .layerSelection = LayerSelection::touched,
