@@ -158,7 +158,8 @@ void addLayers(LayeredImage& image, const OIIO::ImageSpec& spec, const PartPixel
     };
     std::vector<Sources> sources;
     for (std::size_t c = 0; c < spec.channelnames.size(); ++c) {
-        auto [layerName, channel] = splitChannel(spec.channelnames[c]);
+        auto [ofChannel, channel] = splitChannel(spec.channelnames[c]);
+        std::string layerName = std::move(ofChannel);  // clang++ lets no lambda see a binding
         if (layerName.empty() && !first) layerName = part;
         auto known = std::find_if(sources.begin(), sources.end(), [&](const Sources& s) { return image.layers[s.layer].name == layerName; });
         if (known == sources.end()) {
