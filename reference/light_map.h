@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bvh/embree_scene.h"
+#include "core/bvh/embree_scene.h"
 #include "core/scene/light.h"
 #include "reference/sobol.h"
 

@@ -1,11 +1,11 @@
 cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
-# The arrows (no others): core <- voxel, lrsm, bvh; bvh <- reference; voxel, lrsm <- conetrace/frame; conetrace/frame, bvh <- conetrace/lrsm <- conetrace;
+# The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm <- conetrace; core/bvh <- conetrace/lrsm, reference;
 # voxel <- voxel/surface, voxel/radiance <- conetrace/vct; conetrace/frame <- conetrace/vct <- conetrace;
 # conetrace, reference <- the commands that need libraries of their own <- the program. A folder that holds a target has a row.
-# `reference` shares scene, materials and lights with the passes, and no filtering or gathering code: so it can judge. Of visibility they share `bvh` alone, Embree's.
-set(passes core/base core/settings core/scene core/raster voxel voxel/surface voxel/radiance lrsm bvh conetrace conetrace/frame conetrace/lrsm conetrace/vct)
+# `reference` shares scene, materials and lights with the passes, and no filtering or gathering code: so it can judge. Of visibility they share `core/bvh` alone, Embree's.
+set(passes core/base core/settings core/scene core/raster core/bvh voxel voxel/surface voxel/radiance lrsm conetrace conetrace/frame conetrace/lrsm conetrace/vct)
 set(allowed_core/base core/base)
 set(allowed_core/settings core/base core/settings)
 set(allowed_core/scene core/base core/settings core/scene)
@@ -16,12 +16,12 @@ set(allowed_voxel core/base core/settings core/scene core/raster voxel)
 set(allowed_voxel/surface ${allowed_voxel} voxel/surface)
 set(allowed_voxel/radiance ${allowed_voxel} voxel/radiance)
 set(allowed_lrsm core/base core/settings core/scene core/raster lrsm)
-set(allowed_bvh core/base core/scene bvh)
+set(allowed_core/bvh core/base core/scene core/bvh)
 set(allowed_conetrace/frame core/base core/settings core/scene core/raster voxel lrsm conetrace/frame)
-set(allowed_conetrace/lrsm ${allowed_conetrace/frame} bvh conetrace/lrsm)
+set(allowed_conetrace/lrsm ${allowed_conetrace/frame} core/bvh conetrace/lrsm)
 set(allowed_conetrace/vct ${allowed_conetrace/frame} voxel/surface voxel/radiance conetrace/vct)
 set(allowed_conetrace ${passes})
-set(allowed_reference core/base core/scene bvh reference)
+set(allowed_reference core/base core/scene core/bvh reference)
 set(allowed_apps/common ${passes} core/imageio core/report apps/common)
 set(allowed_apps/capture ${passes} core/imageio core/report apps/common apps/capture)
 set(allowed_apps/check ${allowed_apps/capture} apps/check)
@@ -46,8 +46,8 @@ set(folders ${passes} core/imageio core/report reference apps/common ${commands}
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
 set(owned_tiny_gltf.h "^core/scene/gltf")
-set(owned_embree3 "^bvh/")
-set(owned_embree4 "^bvh/")
+set(owned_embree3 "^core/bvh/")
+set(owned_embree4 "^core/bvh/")
 set(owned_CLI "^apps/")
 set(owned_tbb "^core/base/parallel|^reference/")
 set(owned_boost "^apps/validate/equations/oracle")

@@ -1,10 +1,10 @@
 #include "apps/validate/split.h"
 
-#include "bvh/embree_scene.h"
 #include "conetrace/frame/cones.h"
 #include "conetrace/lrsm/gather.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "core/bvh/embree_scene.h"
 #include "reference/integrator.h"
 #include "voxel/voxel_ray.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bvh/embree_scene.h"
 #include "conetrace/lrsm/gather.h"
+#include "core/bvh/embree_scene.h"
 
 /// visibility = rays, voxel-rays: the gather that ray-tracing hardware would run. Each cone's axis is a ray; its light is the LRSM's at the first surface met.
 namespace lrsm {

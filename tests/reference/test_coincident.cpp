@@ -1,4 +1,4 @@
-#include "bvh/coincident.h"
+#include "core/bvh/coincident.h"
 
 #include "core/scene/shapes.h"
 #include "reference/path_trace.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/validate/equations/layer_model.h"
-#include "bvh/embree_scene.h"
+#include "core/bvh/embree_scene.h"
 
 #include <glm/glm.hpp>
 

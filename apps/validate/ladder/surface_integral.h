@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bvh/embree_scene.h"
 #include "conetrace/lrsm/march.h"
+#include "core/bvh/embree_scene.h"
 #include "reference/integrator.h"
 
 /// What rays through the triangles say: the tops of both ladders.

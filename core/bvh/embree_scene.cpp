@@ -1,8 +1,8 @@
-#include "bvh/embree_scene.h"
+#include "core/bvh/embree_scene.h"
 
-#include "bvh/coincident.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "core/bvh/coincident.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

@@ -1,4 +1,4 @@
-#include "bvh/embree_scene.h"
+#include "core/bvh/embree_scene.h"
 
 #include "core/base/errors.h"
 
