@@ -3,6 +3,7 @@
 #include "apps/capture/tolerances.h"
 #include "conetrace/frame/specular_albedo.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace lrsm {
@@ -34,7 +35,8 @@ void addSchedules(CaptureTables& tables)
     for (const MarchSchedule& schedule : tables.plan.ringSchedules) all.push_back(&schedule);
     for (const MarchSchedule& schedule : tables.plan.specularSchedules) all.push_back(&schedule);
 
-    const std::size_t longest = tables.plan.longestSchedule;
+    std::size_t longest = 0;
+    for (const MarchSchedule* schedule : all) longest = std::max(longest, schedule->steps.size());
     std::vector<float> values(all.size() * longest * kStepColumns, 0.0f);
     std::vector<std::uint32_t> counts;
     for (std::size_t s = 0; s < all.size(); ++s) {

@@ -34,6 +34,16 @@ struct Gathered {
     Counters counters;
 };
 
+/// Pictures of the G-buffer's size, all 0.
+inline Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs)
+{
+    Gathered out;
+    out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
+    out.opacity = Image<float>(gbuffer.width, gbuffer.height);
+    if (needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
+    return out;
+}
+
 /// Irradiance with opacity, and specular: half x4 on a GPU.
 template <class Visit>
 void forEachArray(const Gathered& gathered, Visit&& visit)

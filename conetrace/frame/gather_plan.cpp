@@ -30,8 +30,6 @@ GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, i
             plan.specularSchedules.push_back(makeSchedule(settings, specularTanHalf(settings, roughness), reach));
         }
     }
-    for (const auto* schedules : {&plan.ringSchedules, &plan.specularSchedules})
-        for (const MarchSchedule& schedule : *schedules) plan.longestSchedule = std::max(plan.longestSchedule, schedule.steps.size());
     return plan;
 }
 

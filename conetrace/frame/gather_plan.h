@@ -13,7 +13,6 @@ struct GatherPlan {
     ConeSet cones;
     std::vector<MarchSchedule> ringSchedules;      ///< one a ring
     std::vector<MarchSchedule> specularSchedules;  ///< by roughness class; one when the aperture is fixed, none without specular cones
-    std::size_t longestSchedule = 0;               ///< steps
 
     /// The schedule of the specular cone for this roughness (clamped to [0, 1]; NaN counts as 0).
     const MarchSchedule& specularSchedule(float roughness) const;

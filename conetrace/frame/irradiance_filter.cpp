@@ -1,7 +1,8 @@
 #include "conetrace/frame/irradiance_filter.h"
 
 #include "conetrace/frame/same_surface.h"
-#include "core/base/parallel.h"
+
+#include <cstdlib>
 
 namespace lrsm {
 namespace {
@@ -16,7 +17,7 @@ Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int x, i
     for (int dy = -kReach; dy <= kReach; ++dy) {
         for (int dx = -kReach; dx <= kReach; ++dx) {
             const int nx = x + dx, ny = y + dy;
-            if (nx < 0 || ny < 0 || nx >= gbuffer.width || ny >= gbuffer.height) continue;
+            if (!inPicture(gbuffer, nx, ny)) continue;
             const std::size_t neighbour = irradiance.index(nx, ny);
             if (neighbour != centre && !sameSurface(gbuffer, centre, neighbour)) continue;
             const float weight = (std::abs(dx) == kReach ? 0.5f : 1.0f) * (std::abs(dy) == kReach ? 0.5f : 1.0f);
@@ -32,11 +33,7 @@ Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int x, i
 Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer)
 {
     Image<Vec3> filtered(irradiance.width, irradiance.height);
-    parallelFor(std::size_t(irradiance.height), 8, [&](std::size_t begin, std::size_t end) {
-        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < irradiance.width; ++x)
-                if (gbuffer.covered(irradiance.index(x, y))) filtered.at(x, y) = filterPixel(irradiance, gbuffer, x, y);
-    });
+    forCovered(gbuffer, [&](int x, int y) { filtered.at(x, y) = filterPixel(irradiance, gbuffer, x, y); });
     return filtered;
 }
 

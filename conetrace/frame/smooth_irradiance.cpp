@@ -1,7 +1,6 @@
 #include "conetrace/frame/smooth_irradiance.h"
 
 #include "conetrace/frame/same_surface.h"
-#include "core/base/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,25 +9,9 @@
 namespace lrsm {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;
 constexpr int kFirstSpacing = 4;  ///< pixels: the width of filterIrradiance
 constexpr int kHorizonSteps[] = {2, 4, 8, 16, 32, 64, 128, 256};
 constexpr int kHorizonDirections[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
-
-template <class Pixel>
-void forCovered(const GBuffer& gbuffer, const Pixel& pixel)
-{
-    parallelFor(std::size_t(gbuffer.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < gbuffer.width; ++x)
-                if (gbuffer.covered(gbuffer.position.index(x, y))) pixel(x, y);
-    });
-}
-
-bool inside(const GBuffer& gbuffer, int x, int y)
-{
-    return x >= 0 && y >= 0 && x < gbuffer.width && y < gbuffer.height;
-}
 
 float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)[2])
 {
@@ -37,7 +20,7 @@ float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)
     float sum = 0.0f, horizon = kSamePlaneSlope;  // what is lower may be the surface itself
     for (const int step : kHorizonSteps) {
         const int nx = x + direction[0] * step, ny = y + direction[1] * step;
-        if (!inside(gbuffer, nx, ny)) break;
+        if (!inPicture(gbuffer, nx, ny)) break;
         const std::size_t neighbour = gbuffer.position.index(nx, ny);
         if (!gbuffer.covered(neighbour)) continue;
         const Vec3 between = gbuffer.position.texels[neighbour] - position;
@@ -57,7 +40,7 @@ Vec3 smoothPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, const Im
     for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) {
             const int nx = x + i * spacing, ny = y + j * spacing;
-            if (!inside(gbuffer, nx, ny)) continue;
+            if (!inPicture(gbuffer, nx, ny)) continue;
             const std::size_t neighbour = irradiance.index(nx, ny);
             float weight = (i == 0 ? 1.0f : 0.5f) * (j == 0 ? 1.0f : 0.5f);
             if (neighbour != centre) {

@@ -1,21 +1,13 @@
 #include "conetrace/lrsm/explain.h"
 
+#include "conetrace/frame/pixel_text.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/lrsm/gather_pixel.h"
 
-#include <cstdio>
 #include <string>
 
 namespace lrsm {
 namespace {
-
-template <class... Values>
-std::string format(const char* pattern, Values... values)
-{
-    char line[512];
-    std::snprintf(line, sizeof line, pattern, values...);
-    return line;
-}
 
 /// Writes down everything that the march tells.
 struct TextRecorder {
@@ -25,29 +17,25 @@ struct TextRecorder {
 
     void cone(const ConeRay& ray, float weight, float tanHalf)
     {
-        text += format("\ncone %d  direction %.4f %.4f %.4f  weight %.5f  tan half-angle %.4f\n", cones++, double(ray.direction.x), double(ray.direction.y),
-                       double(ray.direction.z), double(weight), double(tanHalf));
+        text += coneText(cones++, ray.direction, weight, tanHalf);
         text += "  step  distance  diameter  level   density     alpha       transmittance  position\n";
         steps = 0;
     }
     void step(const StepRecord& r)
     {
-        text += format("  %4d  %8.3f  %8.3f  %5.2f  %10.3e  %10.3e  %10.6f     %.4f %.4f %.4f\n", steps++, double(r.step->middle), double(r.step->diameter),
-                       double(r.step->level), double(r.density), double(r.alpha), double(r.transmittance), double(r.pWorld.x), double(r.pWorld.y),
-                       double(r.pWorld.z));
+        text += formatted("  %4d  %8.3f  %8.3f  %5.2f  %10.3e  %10.3e  %10.6f     %.4f %.4f %.4f\n", steps++, double(r.step->middle), double(r.step->diameter),
+                          double(r.step->level), double(r.density), double(r.alpha), double(r.transmittance), double(r.pWorld.x), double(r.pWorld.y),
+                          double(r.pWorld.z));
     }
     void layer(int light, const LayerTerms& t, float transmittance)
     {
-        text += format(
+        text += formatted(
             "        light %d layer %d  R %.4g %.4g %.4g  A %.4f  N %.4f  mean %.4f  variance %.3e  V %.5f  f %.4f  T %.5f"
             "  -> %.4g %.4g %.4g\n",
             light, t.layer, double(t.radiance.x), double(t.radiance.y), double(t.radiance.z), double(t.alpha), double(t.normal), double(t.mean),
             double(t.variance), double(t.visibility), double(t.decay), double(transmittance), double(t.outgoing.x), double(t.outgoing.y), double(t.outgoing.z));
     }
-    void result(const ConeResult& r)
-    {
-        text += format("  I = %.6g %.6g %.6g   opacity %.5f\n", double(r.radiance.x), double(r.radiance.y), double(r.radiance.z), double(r.opacity));
-    }
+    void result(const ConeResult& r) { text += resultText(r.radiance, r.opacity); }
 
   private:
     int steps = 0;
@@ -69,29 +57,23 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
         const Vec3 radiance = gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, roughness, scratch, counts, recorder);
-        specular = format("specular cone (the last above): I = %.6g %.6g %.6g\n", double(radiance.x), double(radiance.y), double(radiance.z));
+        specular = specularText(radiance);
     }
 
-    const Vec3 p = receiver.position, n = receiver.normal, albedo = gbuffer.albedo.texels[pixel];
-    return format("pixel %d,%d: object %u at %.5f %.5f %.5f, normal %.4f %.4f %.4f, albedo %.4f %.4f %.4f, rotation %d of %d\n", x, y,
-                  gbuffer.objectId.texels[pixel], double(p.x), double(p.y), double(p.z), double(n.x), double(n.y), double(n.z), double(albedo.x),
-                  double(albedo.y), double(albedo.z), receiver.rotation, kRotations) +
-           format("distances and diameters in voxels of %.6g m; N is the crossing rate g and V the segment's share w in the slab estimator\n",
-                  double(world.opacity.base.grid.voxelSize)) +
-           recorder.text +
-           format("\nirradiance (before the 4x4 filter) %.6g %.6g %.6g, opacity %.5f\n", double(diffuse.irradiance.x), double(diffuse.irradiance.y),
-                  double(diffuse.irradiance.z), double(diffuse.opacity)) +
-           specular +
-           format("%llu cones, %llu steps, %llu voxel taps, %llu layer samples\n", static_cast<unsigned long long>(counts.cones),
-                  static_cast<unsigned long long>(counts.steps), static_cast<unsigned long long>(counts.voxelTaps),
-                  static_cast<unsigned long long>(counts.lrsmSamples));
+    return receiverText(gbuffer, receiver, x, y) +
+           formatted("distances and diameters in voxels of %.6g m; N is the crossing rate g and V the segment's share w in the slab estimator\n",
+                     double(world.opacity.base.grid.voxelSize)) +
+           recorder.text + irradianceText(diffuse.irradiance, diffuse.opacity) + specular +
+           formatted("%llu cones, %llu steps, %llu voxel taps, %llu layer samples\n", static_cast<unsigned long long>(counts.cones),
+                     static_cast<unsigned long long>(counts.steps), static_cast<unsigned long long>(counts.voxelTaps),
+                     static_cast<unsigned long long>(counts.lrsmSamples));
 }
 
 }  // namespace
 
 std::string explainLrsm(const GatherInput& input, int x, int y)
 {
-    if (!input.gbuffer.covered(input.gbuffer.position.index(x, y))) return format("pixel %d,%d: nothing is drawn here\n", x, y);
+    if (!input.gbuffer.covered(input.gbuffer.position.index(x, y))) return nothingDrawnText(x, y);
     const ConeSettings& settings = input.settings.cones;
     std::vector<Lrsm> lrsms;
     for (const Rsm& rsm : input.rsms) lrsms.push_back(buildLrsm(rsm, input.settings.layers));
@@ -100,10 +82,9 @@ std::string explainLrsm(const GatherInput& input, int x, int y)
     const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     std::string text = settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
                                                                    : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
-    const glm::dvec3& origin = input.scene.origin;
-    if (origin != glm::dvec3(0.0)) text += format("positions count from %.10g %.10g %.10g, the scene's origin\n", origin.x, origin.y, origin.z);
+    text += originText(input.scene);
     if (!lrsms.empty() && lrsms[0].preExposure != 1.0f)
-        text += format("R of layers, and what they give (->), are times %g, the light maps' pre-exposure\n", double(lrsms[0].preExposure));
+        text += formatted("R of layers, and what they give (->), are times %g, the light maps' pre-exposure\n", double(lrsms[0].preExposure));
     return text;
 }
 

@@ -4,7 +4,6 @@
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
 #include "conetrace/lrsm/gather_rays.h"
-#include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/march_slab_batch.h"
 #include "conetrace/lrsm/memory.h"
 #include "voxel/sample_opacity.h"
@@ -182,7 +181,7 @@ class TileBatch {
 
     Vec3 radianceOf(int cone) const
     {
-        return unexposed(world_.cones) * Vec3(result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]);
+        return unexposed(world_.cones.lrsms) * Vec3(result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]);
     }
 
     const GBuffer& gbuffer_;
@@ -217,25 +216,18 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
     return lrsms;
 }
 
-Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings, ConeRecord* record)
+ConeRecord::ConeRecord(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings)
+    : cones(settings.set.count * settings.set.setsPerPixel),
+      diffuse(static_cast<std::size_t>(cones) * gbuffer.position.texels.size(), Vec4(0.0f)),
+      specular(needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>())
 {
-    Gathered out;
-    out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
-    out.opacity = Image<float>(gbuffer.width, gbuffer.height);
-    if (needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
-
-    if (record) {
-        record->cones = settings.set.count * settings.set.setsPerPixel;
-        record->diffuse.assign(static_cast<std::size_t>(record->cones) * out.irradiance.texels.size(), Vec4(0.0f));
-        record->specular = needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>();
-    }
-    return out;
 }
 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record, int lanes)
 {
-    Gathered out = emptyGathered(gbuffer, needs, settings, record);
+    Gathered out = emptyGathered(gbuffer, needs);
+    if (record) *record = ConeRecord(gbuffer, needs, settings);
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};

@@ -17,7 +17,7 @@ ConeResult marchCone(const ConeWorld& world, const Sampler& sampler, const ConeR
         cone = marchSlab(world, sampler, ray, schedule, scratch, counts, recorder);
     else
         cone = marchPaper(world, sampler, ray, schedule, scratch, counts, recorder);
-    cone.radiance *= unexposed(world);
+    cone.radiance *= unexposed(world.lrsms);
     return cone;
 }
 

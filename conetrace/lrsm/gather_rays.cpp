@@ -1,10 +1,8 @@
 #include "conetrace/lrsm/gather_rays.h"
 
-#include "conetrace/frame/cone_batch.h"
 #include "conetrace/frame/cones.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/gather_pixel.h"
-#include "conetrace/lrsm/gather_tiles.h"
 #include "conetrace/lrsm/hit_radiance.h"
 #include "voxel/voxel_ray.h"
 
@@ -20,20 +18,17 @@ struct RayLight {
     std::vector<MapView> maps;  ///< one a light
     const ConeSettings& settings;
     NormalCdf phi;
-    float unexposed;
+    float toSceneUnits;
 
     RayLight(const std::vector<Lrsm>& lrsms, const ConeSettings& cones)
-        : maps(lrsms.begin(), lrsms.end()),
-          settings(cones),
-          phi(cones.gather.gaussian, cones.gather.gaussianTableSize),
-          unexposed(lrsms.empty() ? 1.0f : 1.0f / lrsms.front().preExposure)
+        : maps(lrsms.begin(), lrsms.end()), settings(cones), phi(cones.gather.gaussian, cones.gather.gaussianTableSize), toSceneUnits(unexposed(lrsms))
     {
     }
     Vec3 radiance(const LrsmProbe& probe, ConeCounts& counts) const
     {
         Vec3 sum(0.0f);
         for (const MapView& map : maps) sum += lrsmRadiance(map, probe, settings, phi, counts.lrsmSamples);
-        return unexposed * sum;
+        return toSceneUnits * sum;
     }
 };
 
@@ -95,18 +90,16 @@ class RayTile {
     void place(int tileX, int tileY)
     {
         receivers_.clear();
-        const int xEnd = std::min(gbuffer_.width, (tileX + 1) * kTile), yEnd = std::min(gbuffer_.height, (tileY + 1) * kTile);
-        for (int y = tileY * kTile; y < yEnd; ++y)
-            for (int x = tileX * kTile; x < xEnd; ++x) {
-                const std::size_t pixel = gbuffer_.position.index(x, y);
-                if (!gbuffer_.covered(pixel)) continue;
-                const Vec3& normal = gbuffer_.geometricNormal.texels[pixel];
-                receivers_.push_back({.pixel = pixel,
-                                      .rotation = rotationOfPixel(x, y, light_.settings.set.rotation),
-                                      .origin = hits_.origin(gbuffer_.position.texels[pixel], normal),
-                                      .geometricNormal = normal,
-                                      .basis = basisFromNormal(gbuffer_.normal.texels[pixel])});
-            }
+        forPixels(gbuffer_.width, gbuffer_.height, tileX, tileY, [&](int x, int y) {
+            const std::size_t pixel = gbuffer_.position.index(x, y);
+            if (!gbuffer_.covered(pixel)) return;
+            const Vec3& normal = gbuffer_.geometricNormal.texels[pixel];
+            receivers_.push_back({.pixel = pixel,
+                                  .rotation = rotationOfPixel(x, y, light_.settings.set.rotation),
+                                  .origin = hits_.origin(gbuffer_.position.texels[pixel], normal),
+                                  .geometricNormal = normal,
+                                  .basis = basisFromNormal(gbuffer_.normal.texels[pixel])});
+        });
         std::stable_sort(receivers_.begin(), receivers_.end(), [](const auto& a, const auto& b) { return a.rotation < b.rotation; });
     }
 
@@ -170,7 +163,8 @@ template <class Hits>
 Gathered gatherTiles(const GBuffer& gbuffer, const Camera& camera, const Hits& hits, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                      const ConeSettings& settings, ConeRecord* record)
 {
-    Gathered out = emptyGathered(gbuffer, needs, settings, record);
+    Gathered out = emptyGathered(gbuffer, needs);
+    if (record) *record = ConeRecord(gbuffer, needs, settings);
     const RayLight light(lrsms, settings);
     const ConeSet cones = makeConeSet(settings);
     const ConeCounts total = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {

@@ -1,5 +1,6 @@
 #include "conetrace/lrsm/hit_radiance.h"
 
+#include "conetrace/lrsm/march_slab.h"
 #include "lrsm/sample.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ Vec3 layerRadiance(const Lrsm& lrsm, int layer, const ProbeInLight& at, const No
 
     // Eq. 12.
     const float nDotL = glm::dot(normal, at.toLight) / glm::length(normal);
-    const float h = 1.5f * at.footprint / std::max(nDotL, 1e-3f);
+    const float h = 1.5f * at.footprint / std::max(nDotL, kLeastLightCosine);
     if (std::abs(fromMean) > h + kCdfLimit * sigma) return Vec3(0.0f);
     const float visibility = phi((fromMean + h) / sigma) - phi((fromMean - h) / sigma);
     const Float4 radiance = sampleRadiance(texels, at.taps);

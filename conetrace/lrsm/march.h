@@ -23,9 +23,9 @@ struct ConeWorld {
 };
 
 /// What turns gathered radiance into the scene's units. All maps have the scene's one pre-exposure, a power of two: exponents alone change.
-inline float unexposed(const ConeWorld& world)
+inline float unexposed(const std::vector<Lrsm>& lrsms)
 {
-    return world.lrsms.empty() ? 1.0f : 1.0f / world.lrsms.front().preExposure;
+    return lrsms.empty() ? 1.0f : 1.0f / lrsms.front().preExposure;
 }
 
 /// The lookup for any pyramid and setting; the specialised OpacitySampler gives the same bits faster.
@@ -74,14 +74,10 @@ inline float sumOf(const Vec3& v)
     return v.x + v.y + v.z;
 }
 
-/// Area density, per base voxel of length, that a cone along `direction` meets: by axis, and their sum.
+/// Area density, per base voxel of length, that a cone along `direction` meets, by axis.
 inline Vec3 coveredAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
 {
     return pyramid.axes == OpacityAxes::directional ? glm::abs(direction) * sample : Vec3(sample.x, 0.0f, 0.0f);
-}
-inline float densityAlong(const OpacityPyramid& pyramid, const Vec3& sample, const Vec3& direction)
-{
-    return sumOf(coveredAlong(pyramid, sample, direction));
 }
 
 }  // namespace lrsm

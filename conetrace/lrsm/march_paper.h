@@ -45,7 +45,7 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
         // Occlusion.
         ++counts.voxelTaps;
         const Vec3 tap = sampler(pVoxels, step.level);
-        const float density = densityAlong(world.opacity, tap, ray.direction);
+        const float density = sumOf(coveredAlong(world.opacity, tap, ray.direction));
         const float alpha = stepOpacity(density, step.end - step.begin, settings);
         const Vec3 pWorld = ray.originWorld + offset * grid.voxelSize;
         if constexpr (Recorder::active) recorder.step({&step, pWorld, density, alpha, transmittance});

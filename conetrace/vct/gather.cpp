@@ -61,11 +61,7 @@ Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume)
 {
     const ConeSettings& cones = input.settings.cones;
     const GBuffer& gbuffer = input.gbuffer;
-    Gathered out;
-    out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
-    out.opacity = Image<float>(gbuffer.width, gbuffer.height);
-    if (input.needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
-
+    Gathered out = emptyGathered(gbuffer, input.needs);
     const GatherPlan plan = planVct(cones, input.needs, volume.resolution());
     const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = cones, .vct = input.settings.vct};
     const ConeCounts counts = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {

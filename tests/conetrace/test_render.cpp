@@ -6,6 +6,7 @@
 #include "core/scene/shapes.h"
 
 #include "catch.h"
+#include "tests/conetrace/explanation.h"
 
 #include <cfenv>
 #include <cmath>
@@ -224,17 +225,5 @@ TEST_CASE("frame: two-rooms keeps most of the light in the lit room", "[conetrac
 
 TEST_CASE("pixel: the explanation names every cone and ends with the pixel's own irradiance", "[conetrace][pixel]")
 {
-    const auto scene = makeBuiltinScene("cornell-box");
-    Settings settings = smallSettings(GENERATE(Estimator::slab, Estimator::paper));
-    settings.cones.set.filter = false;
-    RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    const Frame frame = renderFrame(*scene, scene->cameras[0], settings, options);
-    const std::string text = explainPixel(*scene, scene->cameras[0], settings, options, 20, 30);
-    for (int cone = 0; cone < 6; ++cone) CHECK(text.find("cone " + std::to_string(cone)) != std::string::npos);
-    char expected[128];
-    const Vec3 e = frame.irradiance.at(20, 30);
-    std::snprintf(expected, sizeof expected, "irradiance (before the 4x4 filter) %.6g %.6g %.6g", double(e.x), double(e.y), double(e.z));
-    CHECK(text.find(expected) != std::string::npos);
+    checkExplanation(smallSettings(GENERATE(Estimator::slab, Estimator::paper)));
 }

@@ -290,7 +290,7 @@ TEST_CASE("Eq. 1: the cut-off ends a cone that has nothing left to gather, and l
 TEST_CASE("density along a cone: the value itself, or area densities weighted by the direction, whatever its signs", "[conetrace][march]")
 {
     OpacityPyramid pyramid;
-    CHECK(densityAlong(pyramid, Vec3(0.3f), Vec3(0, -0.6f, 0.8f)) == 0.3f);
+    CHECK(sumOf(coveredAlong(pyramid, Vec3(0.3f), Vec3(0, -0.6f, 0.8f))) == 0.3f);
     pyramid.axes = OpacityAxes::directional;
-    CHECK(double(densityAlong(pyramid, Vec3(0.5f, 0.25f, 1.0f), Vec3(0, -0.6f, 0.8f))) == Approx(0.6 * 0.25 + 0.8));
+    CHECK(double(sumOf(coveredAlong(pyramid, Vec3(0.5f, 0.25f, 1.0f), Vec3(0, -0.6f, 0.8f)))) == Approx(0.6 * 0.25 + 0.8));
 }

@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "tests/conetrace/explanation.h"
 
 #include "conetrace/render.h"
 #include "conetrace/vct/gather.h"
@@ -286,17 +287,5 @@ TEST_CASE("vct: it builds what it reads, and holds what it said it would", "[con
 
 TEST_CASE("vct: the explanation names every cone and ends with the pixel's own irradiance", "[conetrace][vct][pixel]")
 {
-    const auto scene = makeBuiltinScene("cornell-box");
-    Settings settings = smallVct("vct");
-    settings.cones.set.filter = false;
-    RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    const Frame frame = renderFrame(*scene, scene->cameras[0], settings, options);
-    const std::string text = explainPixel(*scene, scene->cameras[0], settings, options, 20, 30);
-    for (int cone = 0; cone < 6; ++cone) CHECK(text.find("cone " + std::to_string(cone)) != std::string::npos);
-    char expected[128];
-    const Vec3 e = frame.irradiance.at(20, 30);
-    std::snprintf(expected, sizeof expected, "irradiance (before the 4x4 filter) %.6g %.6g %.6g", double(e.x), double(e.y), double(e.z));
-    CHECK(text.find(expected) != std::string::npos);
+    checkExplanation(smallVct("vct"));
 }
