@@ -30,7 +30,7 @@ struct CapturedLight {
 };
 
 struct CapturedPass {
-    std::string name;                 ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", "gbuffer", "direct", "cones", "filter", "composite"
+    std::string name;                 ///< "voxelize", "voxel mips", "rsm 0", "lrsm 0", "gbuffer", "direct", "cones", "filter", "smooth", "composite"
     std::vector<std::string> inputs;  ///< passes it reads; "scene" and "tables" among them
     std::string sha256;               ///< of the whole output, the one that frame.json has
 };

@@ -61,16 +61,19 @@ void printSummary(const Capture& capture, std::size_t bytes, const std::string& 
     std::cout << where << ": " << capture.buffers.size() << " buffers, " << megabytes(bytes) << " with their textures; manifest.json says what is what\n";
 }
 
-/// Exact shadows need the scene's triangles, which a candidate's pass has not: a golden capture compares with the RSM's depth unless told otherwise.
+/// Exact shadows need the scene's triangles, which a candidate's pass has not, and the wider filter passes are not the paper's: a golden capture compares
+/// with the RSM's depth and ends with the 4x4 filter, unless told otherwise.
 Settings capturedSettings(const Options& options)
 {
     Settings settings = chosenSettings(options);
-    const bool chosen = !options.settingsFile.empty() || std::any_of(options.assignments.begin(), options.assignments.end(),
-                                                                     [](const std::string& text) { return text.starts_with("shadows="); });
+    const auto chosen = [&](const char* assignment) {
+        return !options.settingsFile.empty() ||
+               std::any_of(options.assignments.begin(), options.assignments.end(), [&](const std::string& text) { return text.starts_with(assignment); });
+    };
     if (settings.method != Method::lrsm) throw InputError("capture", "records the passes of method=lrsm alone; leave the method out, or render");
-    if (settings.cones.march.visibility != Visibility::cones || settings.cones.set.filterPasses > 0)
-        throw InputError("capture", "holds the cones' passes alone; take visibility=cones and filter_passes=0");
-    if (settings.direct.shadows == Shadows::exact && !chosen) settings.direct.shadows = Shadows::hard;
+    if (settings.cones.march.visibility != Visibility::cones) throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
+    if (!chosen("filter_passes=")) settings.cones.set.filterPasses = 0;
+    if (settings.direct.shadows == Shadows::exact && !chosen("shadows=")) settings.direct.shadows = Shadows::hard;
     return settings;
 }
 

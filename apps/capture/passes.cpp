@@ -21,7 +21,7 @@ void keep(const PassOutput& output, std::size_t, Capture& capture)
     if (const T* made = output.as<T>()) toBuffers(*made, capture.buffers);
 }
 
-constexpr char kDirect[] = "direct.radiance", kFilter[] = "filter.irradiance";
+constexpr char kDirect[] = "direct.radiance", kFilter[] = "filter.irradiance", kSmooth[] = "smooth.irradiance";
 template <const char* name>
 void keepPicture(const PassOutput& output, std::size_t, Capture& capture)
 {
@@ -95,6 +95,11 @@ Families readFiltered(const Settings& settings)
     return settings.cones.set.filter ? Families{"filter"} : Families{};
 }
 
+Families readSmoothed(const Settings& settings)
+{
+    return settings.cones.set.smoothingPasses() > 0 ? Families{"smooth"} : readFiltered(settings);
+}
+
 // clang-format off
 const std::vector<PassRow> kRows = {
     {.family = "scene", .given = true, .describe = describeScene},
@@ -122,9 +127,11 @@ const std::vector<PassRow> kRows = {
     {.family = "filter", .reads = {"gbuffer", "cones"},
      .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
      .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
-    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones"}, .readsBesides = readFiltered,
+    {.family = "smooth", .reads = {"gbuffer", "cones"}, .readsBesides = readFiltered,
+     .describe = describeSmooth, .record = keepPicture<kSmooth>, .rerun = rerunSmooth},
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones"}, .readsBesides = readSmoothed,
      .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
-     .sameTexel = {"gbuffer.albedo", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
+     .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
                    "composite.specular"}},
 };
 // clang-format on

@@ -73,6 +73,13 @@ void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t)
                     {"irradiance averaged over 4x4 pixels of the same surface", kPicture, kIrradianceUnit}, tolerances::kFilter);
 }
 
+void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    if (frame.settings.cones.set.smoothingPasses() > 0)
+        out.picture("smooth.irradiance", frame.width, frame.height, kRgb, {"irradiance smoothed by wider taps on the same surface", kPicture, kIrradianceUnit},
+                    tolerances::kFilter);
+}
+
 void describeComposite(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const auto picture = [&](const std::string& name, const std::string& meaning, const Tolerance& tolerance) {
@@ -148,9 +155,14 @@ Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name)
     return imageFrom<Vec3>(capture, name);
 }
 
-Image<Vec3> irradianceFromCapture(const Capture& capture)
+Image<Vec3> filteredFromCapture(const Capture& capture)
 {
     return pictureFromCapture(capture, capture.settings.cones.set.filter ? "filter.irradiance" : "cones.irradiance");
+}
+
+Image<Vec3> irradianceFromCapture(const Capture& capture)
+{
+    return capture.settings.cones.set.smoothingPasses() > 0 ? pictureFromCapture(capture, "smooth.irradiance") : filteredFromCapture(capture);
 }
 
 }  // namespace lrsm

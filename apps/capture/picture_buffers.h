@@ -11,6 +11,7 @@ void describeGBuffer(Catalogue& out, const DescribedFrame& frame, std::size_t li
 void describeDirect(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeCones(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeComposite(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 
 // Fill in the bytes of those that are in the list; the others are left out.
@@ -23,7 +24,9 @@ void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<
 GBuffer gbufferFromCapture(const Capture& capture);
 Gathered gatheredFromCapture(const Capture& capture);
 Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name);
-/// The irradiance that the composite reads: the filter's where it ran.
+/// The irradiance of the 4x4 filter, or of the cones where it did not run.
+Image<Vec3> filteredFromCapture(const Capture& capture);
+/// The irradiance that the composite reads: that of the last filter that ran.
 Image<Vec3> irradianceFromCapture(const Capture& capture);
 
 }  // namespace lrsm

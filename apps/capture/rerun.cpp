@@ -8,6 +8,7 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
+#include "conetrace/frame/smooth_irradiance.h"
 #include "core/base/errors.h"
 #include "voxel/pyramid_levels.h"
 #include "voxel/voxelize.h"
@@ -183,6 +184,12 @@ void rerunCones(const Capture& inputs, std::size_t, Rerun& made)
 void rerunFilter(const Capture& inputs, std::size_t, Rerun& made)
 {
     toBuffers(filterIrradiance(pictureFromCapture(inputs, "cones.irradiance"), gbufferFromCapture(inputs)), "filter.irradiance", made.outputs);
+}
+
+void rerunSmooth(const Capture& inputs, std::size_t, Rerun& made)
+{
+    toBuffers(smoothIrradiance(filteredFromCapture(inputs), gbufferFromCapture(inputs), inputs.settings.cones.set.smoothingPasses()), "smooth.irradiance",
+              made.outputs);
 }
 
 void rerunComposite(const Capture& inputs, std::size_t, Rerun& made)

@@ -33,6 +33,7 @@ void rerunGBuffer(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunDirect(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunCones(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunFilter(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunSmooth(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunComposite(const Capture& inputs, std::size_t light, Rerun& made);
 
 }  // namespace lrsm

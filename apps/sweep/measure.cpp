@@ -167,7 +167,7 @@ Settings Calibration::settings()
                 .storage = Storage::gpu,
                 .halfRounding = HalfRounding::d3d};
     s.direct = {.shadows = Shadows::hard, .shadowResolution = 1, .depthBiasTexels = 0.75f, .pcfWidthTexels = 2.0f, .shadowConeApertureDegrees = 2.0f};
-    s.cones.set = {.count = 6, .apertureScale = 0.5f, .rotation = Rotation::strata, .filter = true, .setsPerPixel = 1};
+    s.cones.set = {.count = 6, .apertureScale = 0.5f, .rotation = Rotation::strata, .filter = true, .filterPasses = 0, .setsPerPixel = 1};
     s.cones.march = {.estimator = Estimator::slab,
                      .step = 0.5f,
                      .startVoxels = 3.0f,

@@ -23,14 +23,14 @@ constexpr Point kPoints[] = {
     {"6 cones, 256^3, long steps", "voxel_resolution=256 rsm_resolution=512 start_voxels=2 step=0.75"},
     {"6 cones, 256^3", "voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
     {"balanced", ""},
-    {"6 rays", "visibility=rays aperture_scale=0.0625 filter_passes=1"},
+    {"6 rays", "visibility=rays aperture_scale=0.0625"},
     {"9 cones, 512^3", "cone_count=9 depth_layers=3"},
     {"12 cones, 512^3", "cone_count=12 depth_layers=3"},
-    {"fine", "cone_count=16"},
-    {"rays", "visibility=rays cone_count=16 aperture_scale=0.0625 filter_passes=1"},
-    {"16 cones, 1024^3", "cone_count=16 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"24 cones, 1024^3", "cone_count=24 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"accurate", "cone_count=32 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"fine", "cone_count=16 filter_passes=1"},
+    {"rays", "visibility=rays cone_count=16 aperture_scale=0.0625"},
+    {"16 cones, 1024^3", "cone_count=16 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"24 cones, 1024^3", "cone_count=24 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"accurate", "cone_count=32 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFirstSpacing = 4;  ///< pixels: the width of filterIrradiance
 constexpr int kHorizonSteps[] = {2, 4, 8, 16, 32, 64, 128, 256};
-constexpr int kHorizonDirections[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+constexpr int kDirections[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
 float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)[2])
 {
@@ -32,26 +32,68 @@ float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)
     return sum;
 }
 
-Vec3 smoothPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, const Image<float>& nearness, int x, int y, int spacing)
+constexpr unsigned kOpposite = 4;  ///< from a direction to the other way
+
+/// Bit d: the surface goes on from a pixel to the next of direction d, or, doubled, to the one `spacing` pixels away over all that lie between.
+using Links = Image<std::uint8_t>;
+
+template <class Linked>
+Links linksWhere(const GBuffer& gbuffer, int spacing, const Linked& linked)
+{
+    Links links(gbuffer.width, gbuffer.height);
+    forCovered(gbuffer, [&](int x, int y) {
+        unsigned bits = 0;
+        for (unsigned d = 0; d < std::size(kDirections); ++d) {
+            const int nx = x + kDirections[d][0] * spacing, ny = y + kDirections[d][1] * spacing;
+            if (inPicture(gbuffer, nx, ny) && linked(links.index(x, y), links.index(nx, ny), d)) bits |= 1u << d;
+        }
+        links.at(x, y) = static_cast<std::uint8_t>(bits);
+    });
+    return links;
+}
+
+Links adjacent(const GBuffer& gbuffer)
+{
+    return linksWhere(gbuffer, 1, [&](std::size_t here, std::size_t there, unsigned) { return sameSurface(gbuffer, here, there); });
+}
+
+Links doubled(const Links& links, const GBuffer& gbuffer, int spacing)
+{
+    return linksWhere(gbuffer, spacing,
+                      [&](std::size_t here, std::size_t there, unsigned d) { return (links.texels[here] & links.texels[there] & (1u << d)) != 0; });
+}
+
+struct SmoothInput {
+    const GBuffer& gbuffer;
+    const Image<float>& nearness;
+    const Links& links;
+    int spacing;
+};
+
+/// Weight of the tap of direction d, 0 where it is not of the same surface.
+float tapWeight(const SmoothInput& in, std::size_t centre, std::size_t neighbour, unsigned d)
+{
+    if ((in.links.texels[centre] & (1u << d)) == 0 || !sameSurface(in.gbuffer, centre, neighbour)) return 0.0f;
+    const Vec3 between = in.gbuffer.position.texels[neighbour] - in.gbuffer.position.texels[centre];
+    const float change = std::sqrt(glm::dot(between, between)) * std::max(in.nearness.texels[centre], in.nearness.texels[neighbour]);
+    const float tent = kDirections[d][0] != 0 && kDirections[d][1] != 0 ? 0.25f : 0.5f;
+    return tent * std::max(0.0f, 1.0f - change / kGradientTolerance);
+}
+
+Vec3 smoothPixel(const Image<Vec3>& irradiance, const SmoothInput& in, int x, int y)
 {
     const std::size_t centre = irradiance.index(x, y);
-    Vec3 sum(0.0f);
-    float total = 0.0f;
-    for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i) {
-            const int nx = x + i * spacing, ny = y + j * spacing;
-            if (!inPicture(gbuffer, nx, ny)) continue;
-            const std::size_t neighbour = irradiance.index(nx, ny);
-            float weight = (i == 0 ? 1.0f : 0.5f) * (j == 0 ? 1.0f : 0.5f);
-            if (neighbour != centre) {
-                if (!sameSurface(gbuffer, centre, neighbour)) continue;
-                const Vec3 between = gbuffer.position.texels[neighbour] - gbuffer.position.texels[centre];
-                const float change = std::sqrt(glm::dot(between, between)) * std::max(nearness.texels[centre], nearness.texels[neighbour]);
-                weight *= std::max(0.0f, 1.0f - change / kGradientTolerance);
-            }
-            sum += weight * irradiance.texels[neighbour];
-            total += weight;
-        }
+    Vec3 sum = irradiance.texels[centre];
+    float total = 1.0f;
+    for (unsigned d = 0; d < kOpposite; ++d) {
+        const int dx = kDirections[d][0] * in.spacing, dy = kDirections[d][1] * in.spacing;
+        if (!inPicture(in.gbuffer, x + dx, y + dy) || !inPicture(in.gbuffer, x - dx, y - dy)) continue;
+        const std::size_t ahead = irradiance.index(x + dx, y + dy), behind = irradiance.index(x - dx, y - dy);
+        // Both or neither, so that a gradient keeps its value.
+        const float weight = std::min(tapWeight(in, centre, ahead, d), tapWeight(in, centre, behind, d + kOpposite));
+        sum += weight * (irradiance.texels[ahead] + irradiance.texels[behind]);
+        total += 2.0f * weight;
+    }
     return sum / total;
 }
 
@@ -62,8 +104,8 @@ Image<float> nearnessOf(const GBuffer& gbuffer)
     Image<float> nearness(gbuffer.width, gbuffer.height);
     forCovered(gbuffer, [&](int x, int y) {
         float sum = 0.0f;
-        for (const auto& direction : kHorizonDirections) sum += nearnessAlong(gbuffer, x, y, direction);
-        nearness.at(x, y) = sum / float(std::size(kHorizonDirections));
+        for (const auto& direction : kDirections) sum += nearnessAlong(gbuffer, x, y, direction);
+        nearness.at(x, y) = sum / float(std::size(kDirections));
     });
     return nearness;
 }
@@ -71,10 +113,13 @@ Image<float> nearnessOf(const GBuffer& gbuffer)
 Image<Vec3> smoothIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int passes)
 {
     const Image<float> nearness = nearnessOf(gbuffer);
+    Links links = adjacent(gbuffer);
+    for (int spacing = 1; spacing < kFirstSpacing; spacing *= 2) links = doubled(links, gbuffer, spacing);
     Image<Vec3> from = irradiance;
-    for (int pass = 0; pass < passes; ++pass) {
+    for (int pass = 0, spacing = kFirstSpacing; pass < passes; ++pass, spacing *= 2) {
+        if (pass > 0) links = doubled(links, gbuffer, spacing / 2);
         Image<Vec3> to(irradiance.width, irradiance.height);
-        forCovered(gbuffer, [&](int x, int y) { to.at(x, y) = smoothPixel(from, gbuffer, nearness, x, y, kFirstSpacing << pass); });
+        forCovered(gbuffer, [&](int x, int y) { to.at(x, y) = smoothPixel(from, {gbuffer, nearness, links, spacing}, x, y); });
         from = std::move(to);
     }
     return from;

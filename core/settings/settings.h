@@ -110,8 +110,10 @@ struct ConeSetSettings {
     float apertureScale = 0.5f;  ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
     bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
-    int filterPasses = 0;  ///< wider passes after it, each twice as wide as the last, 0..3; less where walls are near
+    int filterPasses = 2;  ///< wider passes after it (none without it), each twice as wide as the last, 0..3; less where walls are near
     int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
+    /// Those that run.
+    int smoothingPasses() const { return filter ? filterPasses : 0; }
     bool operator==(const ConeSetSettings&) const = default;
 };
 

@@ -204,7 +204,9 @@ void addConeRows(std::vector<SettingRow>& rows)
                                {"none", "azimuth", "strata"}));
     rows.push_back(flag<&Set::filter>({"irradiance_filter", "", "geometry-aware 4x4 filter of the irradiance, for rotation != none", "ours; paper: false"}));
     rows.push_back(whole<&Set::filterPasses>(
-        {"filter_passes", "", "after it: 3x3 taps 4, 8, 16 pixels apart on the same surface, less where other surfaces are near", "ours; paper: 0"}, {0, 3}));
+        {"filter_passes", "", "after it, if it is on: 3x3 taps 4, 8, 16 pixels apart on the same surface, less where other surfaces are near",
+         "ours; paper: 0"},
+        {0, 3}));
     rows.push_back(whole<&Set::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
     rows.push_back(real<&March::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));

@@ -35,6 +35,7 @@ std::string capture(const ScratchFolder& scratch, const Golden& golden)
     settings.voxel.mode = Voxelization::raster;
     settings.voxel.resolution = 32;
     settings.rsm.resolution = 64;
+    settings.cones.set.filterPasses = 0;
     // What a shader can compare: a map's texel, or in one scene the mean of several.
     if (settings.direct.shadows == Shadows::exact) settings.direct.shadows = golden.scene == "cornell-glossy" ? Shadows::pcf : Shadows::hard;
     const Scene scene = *makeBuiltinScene(golden.scene);

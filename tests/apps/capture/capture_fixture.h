@@ -14,6 +14,7 @@ inline Settings smallSettings()
     s.voxel.resolution = 32;
     s.rsm.resolution = 64;
     s.direct.shadows = Shadows::hard;
+    s.cones.set.filterPasses = 0;
     return s;
 }
 

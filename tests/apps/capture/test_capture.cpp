@@ -7,6 +7,7 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
+#include "conetrace/frame/smooth_irradiance.h"
 #include "conetrace/render.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
@@ -63,6 +64,7 @@ std::vector<Variant> variants()
     paper.direct.shadows = Shadows::cone;
     paper.force.everything = true;
     Settings wide = smallSettings();
+    wide.cones.set.filterPasses = 2;
     wide.voxel.storage = wide.rsm.storage = wide.layers.storage = Storage::float32;
     wide.layers.dropEmpty = false;
     wide.cones.set.setsPerPixel = 2;
@@ -107,7 +109,8 @@ TEST_CASE("capture: through files and back every pass has the hash that the fram
     CHECK(hashOf(gbufferFromCapture(capture)) == expected["gbuffer"]);
     CHECK(hashOf(pictureFromCapture(capture, "direct.radiance")) == expected["direct"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["cones"]);
-    if (r.settings.cones.set.filter) CHECK(hashOf(irradianceFromCapture(capture)) == expected["filter"]);
+    if (r.settings.cones.set.filter) CHECK(hashOf(filteredFromCapture(capture)) == expected["filter"]);
+    if (r.settings.cones.set.smoothingPasses() > 0) CHECK(hashOf(irradianceFromCapture(capture)) == expected["smooth"]);
     CHECK(hashOf(pictureFromCapture(capture, "composite.combined")) == expected["composite"]);
     CHECK(manifestJson(capture).dump() == manifestJson(r.capture).dump());
 }
@@ -141,6 +144,8 @@ TEST_CASE("capture: each pass run anew on the captured output of the ones before
     CHECK(hashOf(traceCones(gbuffer, c.camera, opacity, lrsms, c.needs, c.settings.cones)) == expected.at("cones"));
     const Gathered gathered = gatheredFromCapture(c);
     if (c.settings.cones.set.filter) CHECK(hashOf(filterIrradiance(gathered.irradiance, gbuffer)) == expected.at("filter"));
+    if (const int passes = c.settings.cones.set.smoothingPasses(); passes > 0)
+        CHECK(hashOf(smoothIrradiance(filteredFromCapture(c), gbuffer, passes)) == expected.at("smooth"));
     const IndirectLight indirect = shadeIndirect(gbuffer, c.camera, irradianceFromCapture(c), gathered.specular);
     CHECK(hashOf(composite(pictureFromCapture(c, "direct.radiance"), indirect)) == expected.at("composite"));
 }

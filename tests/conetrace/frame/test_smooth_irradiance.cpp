@@ -72,6 +72,31 @@ TEST_CASE("smoothing: light does not cross the corner, and moves less along it t
     CHECK(moved(20) > 0.5f);
 }
 
+TEST_CASE("smoothing: light does not cross a thin wall seen from its edge", "[conetrace][smooth]")
+{
+    // One column of the floor is the edge of a wall far above it: the floor goes on behind, in the same plane.
+    GBuffer g = corner(96, 48, 96);
+    Image<Vec3> in(96, 48);
+    for (int y = 0; y < 48; ++y) {
+        g.position.at(48, y) = Vec3(48, y, 30);
+        for (int x = 49; x < 96; ++x) in.at(x, y) = Vec3(1);
+    }
+    const Image<Vec3> out = smoothIrradiance(in, g, 3);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) REQUIRE(out.at(x, y).x == Approx(x > 48 ? 1.0 : 0.0).margin(1e-6));
+}
+
+TEST_CASE("smoothing: a gradient stays as it is up to the corner", "[conetrace][smooth]")
+{
+    const GBuffer g = corner(96, 48, 64);
+    Image<Vec3> in(96, 48);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) in.at(x, y) = Vec3(float(2 + x), 5.0f + 0.5f * float(y), float(100 - x));
+    const Image<Vec3> out = smoothIrradiance(in, g, 3);
+    for (std::size_t i = 0; i < in.texels.size(); ++i)
+        for (int c = 0; c < 3; ++c) REQUIRE(out.texels[i][c] == Approx(in.texels[i][c]).epsilon(1e-5));
+}
+
 TEST_CASE("smoothing: nearness falls with the distance of a wall, and an open floor has none", "[conetrace][smooth]")
 {
     // Scaling the world scales distances: nearness times size is the same.
