@@ -67,8 +67,7 @@ Settings capturedSettings(const Options& options)
     Settings settings = chosenSettings(options);
     const bool chosen = !options.settingsFile.empty() || std::any_of(options.assignments.begin(), options.assignments.end(),
                                                                      [](const std::string& text) { return text.starts_with("shadows="); });
-    if (settings.method != Method::lrsm) throw InputError("capture", "records the passes of method=lrsm alone; leave the method out, or render");
-    if (settings.cones.march.visibility != Visibility::cones || settings.cones.set.filterPasses > 0)
+    if ((settings.method == Method::lrsm && settings.cones.march.visibility != Visibility::cones) || settings.cones.set.filterPasses > 0)
         throw InputError("capture", "holds the cones' passes alone; take visibility=cones and filter_passes=0");
     if (settings.direct.shadows == Shadows::exact && !chosen) settings.direct.shadows = Shadows::hard;
     return settings;
