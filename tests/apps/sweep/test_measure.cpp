@@ -93,6 +93,32 @@ TEST_CASE("a row holds the frame that renderFrame makes: bits, work, bytes, and 
     CHECK(row.error.flip < 1.0);
 }
 
+TEST_CASE("methods are an axis like any other: rows of both, with the passes, bytes and GPU bytes of each", "[sweep][measure][vct]")
+{
+    const SceneCase one = smallCase();
+    const TruthFigures figures = figuresOf(one.truth);
+    const Axes axes = {parseAxis("method=lrsm,vct"), parseAxis("voxel_resolution=16,32")};
+    const std::vector<NamedSettings> product = productOf(axes, smallSettings()).settings;
+    REQUIRE(product.size() == 4);
+    std::set<std::string> irradiances;
+    for (const NamedSettings& named : product) {
+        CAPTURE(named.name);
+        const Measurement row = measureSettings(one, figures, named.settings, calibration(), {.repeat = 1}).row;
+        irradiances.insert(row.irradianceSha256);
+        const bool vct = named.settings.method == Method::vct;
+        const auto has = [&](const std::string& pass) { return std::any_of(row.passes.begin(), row.passes.end(), [&](const auto& p) { return p.name == pass; }); };
+        CHECK(has("vct cones") == vct);
+        CHECK(has("lrsm") == !vct);
+        const Requirements needs = analyseRequirements(one.scene, named.settings.force);
+        const std::vector<MemoryRow> predicted = predictMemory({one.scene, needs, named.settings, kWidth, kHeight});
+        std::size_t gpu = 0;
+        for (const MemoryRow& memory : predicted) gpu += memory.predictedGpu;
+        CHECK(double(row.bytes) == double(frameBytes(predicted, kWidth, kHeight)));
+        CHECK(double(row.gpuBytes) == double(gpu));
+    }
+    CHECK(irradiances.size() == 4);
+}
+
 TEST_CASE("the noise floor is what an independent truth differs by, over sqrt 2", "[sweep][measure]")
 {
     const SceneCase one = smallCase(256, 0), other = smallCase(256, 7);
