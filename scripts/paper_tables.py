@@ -147,7 +147,7 @@ def table3(out):
 
 def figure8(out, images):
     lines = ["| `rsm_min_level` | picture | glossy: RMSE over mean | diffuse: RMSE over mean | flicker, glossy | flicker, diffuse |", "| --- | --- | --- | --- | --- | --- |"]
-    reference = os.path.join(out, "fig8", "reference")
+    reference = os.path.join(out, "fig7", "sponza", "reference")
     truth = {name: layer(reference, name) for name in ("indirect.specular", "irradiance")}
     for level in (0, 2, 4):
         folder = os.path.join(out, "fig8", f"level{level}")

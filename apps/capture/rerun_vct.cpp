@@ -20,13 +20,7 @@ struct CapturedWorld {
 
     GatherInput input(const Capture& capture, const Settings& settings) const
     {
-        return {.scene = scene,
-                .camera = capture.camera,
-                .needs = capture.needs,
-                .settings = settings,
-                .gbuffer = gbuffer,
-                .rsms = rsms,
-                .opacity = opacity};
+        return {.scene = scene, .camera = capture.camera, .needs = capture.needs, .settings = settings, .gbuffer = gbuffer, .rsms = rsms, .opacity = opacity};
     }
 };
 

@@ -125,8 +125,8 @@ void describeVctBase(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const int n = frame.settings.voxel.resolution;
     const VctSettings& vct = frame.settings.vct;
-    addVolume(out, kBase, n, vct, {"r", "g", "b", "occlusion"}, {"radiance times pre_exposure that the voxel sends out, and its bit", kGridSpace, kRadianceUnit},
-              tolerances::kInjected, 0);
+    addVolume(out, kBase, n, vct, {"r", "g", "b", "occlusion"},
+              {"radiance times pre_exposure that the voxel sends out, and its bit", kGridSpace, kRadianceUnit}, tolerances::kInjected, 0);
     addVolume(out, kNormal, n, vct, {"x", "y", "z", ""}, {"mean normal of what emits, shorter than 1 where normals differ", "world", ""},
               tolerances::kInjectedNormal, 0);
 }
@@ -169,8 +169,7 @@ void mipsToBuffers(const RadianceVolume& volume, std::vector<Buffer>& buffers)
 {
     for (std::size_t level = 1; level < volume.faces.size(); ++level)
         for (std::size_t d = 0; d < kFaces.size(); ++d)
-            if (Buffer* buffer = findBuffer(buffers, mipName(kFaces[d], static_cast<int>(level))))
-                toDense(volume.maps[level], volume.faces[level][d], *buffer);
+            if (Buffer* buffer = findBuffer(buffers, mipName(kFaces[d], static_cast<int>(level)))) toDense(volume.maps[level], volume.faces[level][d], *buffer);
 }
 
 VoxelSurface surfaceFromCapture(const Capture& capture, const BitGrid& bits)

@@ -32,7 +32,8 @@ void vctMips(Frame& frame, const Options& options)
     const Program& fromBelow = options.compute("vct mips", {"formats.glsl", "vct_mip.comp.glsl"}, defines);
     defines.push_back("FROM_BASE");
     const Program& fromBase = options.compute("vct mips", {"formats.glsl", "vct_mip.comp.glsl"}, defines);
-    const Texture base = inputTexture(frame, "vct.base", GL_TEXTURE_3D, kUint16x4, n, n, n), normals = inputTexture(frame, "vct.normal", GL_TEXTURE_3D, kUint16x4, n, n, n);
+    const Texture base = inputTexture(frame, "vct.base", GL_TEXTURE_3D, kUint16x4, n, n, n),
+                  normals = inputTexture(frame, "vct.normal", GL_TEXTURE_3D, kUint16x4, n, n, n);
     std::array<Texture, kFaces.size()> faces;
     for (Texture& face : faces) face = makeTexture(GL_TEXTURE_3D, kUint16x4, n / 2, n / 2, n / 2, levels - 1);  // level l is mip l - 1
     frame.time("vct mips", [&] {
@@ -73,7 +74,8 @@ void vctCones(Frame& frame, const Options& options)
     program.set("facing", frame.number("vct_facing"));
     program.set("preExposure", frame.manifest()["pre_exposure"].get<float>());
 
-    const Texture base = inputTexture(frame, "vct.base", GL_TEXTURE_3D, kHalf4, n, n, n), normals = inputTexture(frame, "vct.normal", GL_TEXTURE_3D, kHalf4, n, n, n);
+    const Texture base = inputTexture(frame, "vct.base", GL_TEXTURE_3D, kHalf4, n, n, n),
+                  normals = inputTexture(frame, "vct.normal", GL_TEXTURE_3D, kHalf4, n, n, n);
     std::array<Texture, kFaces.size()> faces;
     const Sampler sampler = borderSampler();
     bindTexture(0, base);

@@ -42,8 +42,7 @@ void tooMuch(Buffer& buffer)
         if (buffer.dtype == Dtype::f4)
             reinterpret_cast<float*>(buffer.bytes.data())[i] *= 1.5f;
         else
-            reinterpret_cast<std::uint16_t*>(buffer.bytes.data())[i] =
-                halfFromFloat(float(1.5 * decodedValue(buffer, i)), HalfRounding::nearestEven);
+            reinterpret_cast<std::uint16_t*>(buffer.bytes.data())[i] = halfFromFloat(float(1.5 * decodedValue(buffer, i)), HalfRounding::nearestEven);
 }
 
 bool textHas(const std::string& text, const std::string& part)

@@ -110,7 +110,9 @@ TEST_CASE("methods are an axis like any other: rows of both, with the passes, by
         const Measurement row = measureSettings(one, figures, named.settings, calibration(), {.repeat = 1}).row;
         irradiances.insert(row.irradianceSha256);
         const bool vct = named.settings.method == Method::vct;
-        const auto has = [&](const std::string& pass) { return std::any_of(row.passes.begin(), row.passes.end(), [&](const auto& p) { return p.family == pass; }); };
+        const auto has = [&](const std::string& pass) {
+            return std::any_of(row.passes.begin(), row.passes.end(), [&](const auto& p) { return p.family == pass; });
+        };
         CHECK(has("vct cones") == vct);
         CHECK(has("lrsm") == !vct);
         const Requirements needs = analyseRequirements(one.scene, named.settings.force);
