@@ -2,6 +2,7 @@
 
 A table NAME stands between the lines <!-- NAME: begin --> and <!-- NAME: end --> of the page.
 """
+import functools
 import json
 import os
 import shutil
@@ -17,19 +18,20 @@ def load(*path):
         return json.load(file)
 
 
-def layer(folder, name):
-    """Pixels (r, g, b) of a layer of image.exr."""
-    path = os.path.join(folder, "image.exr")
+@functools.lru_cache(maxsize=4)
+def picture(path):
+    """Channel names of an EXR, and its pixels as text."""
     listed = subprocess.run(["oiiotool", "--info", "-v", path], capture_output=True, text=True, check=True).stdout
     channels = next(line for line in listed.splitlines() if "channel list:" in line).split(":")[1].replace(" ", "").split(",")
-    at = [channels.index(name + "." + c) for c in "RGB"]
     text = subprocess.run(["oiiotool", "--dumpdata", path], capture_output=True, text=True, check=True).stdout
-    pixels = []
-    for line in text.splitlines():
-        if line.strip().startswith("Pixel ("):
-            values = line.split(":", 1)[1].split()
-            pixels.append(tuple(float(values[i]) for i in at))
-    return pixels
+    return channels, [line.split(":", 1)[1].split() for line in text.splitlines() if line.startswith("    Pixel (")]
+
+
+def layer(folder, name):
+    """Pixels (r, g, b) of a layer of image.exr."""
+    channels, pixels = picture(os.path.join(folder, "image.exr"))
+    at = [channels.index(name + "." + c) for c in "RGB"]
+    return [tuple(float(values[i]) for i in at) for values in pixels]
 
 
 def luminance(pixel):
@@ -89,9 +91,10 @@ def table2(out):
         rows = load(out, "table2", f"{scene}-lrsm.json")["memory"]
         def of(prefix):
             return sum(r.get("gpu_format_bytes") or 0 for r in rows if r["structure"].startswith(prefix))
+        note = "a byte a voxel, and mips" + ("" if scene == "sibenik" else ": 8/7 of 512^3 bytes; the paper's 3 MB more are not explained")
         name = {"sibenik": "Sibenik", "sponza": "Sponza", "dragon": "Sponza Dragon, static part"}[scene]
-        lines.append(f"| {name}: voxels {n}^3 | {voxels} MB | {megabytes(of('voxel'))} MB | a byte a voxel, and mips |")
-        lines.append(f"| {name}: RSM 1024^2 | 22.4 MB | {megabytes(of('rsm'))} MB | the paper's with mips, which nothing reads |")
+        lines.append(f"| {name}: voxels {n}^3 | {voxels} MB | {megabytes(of('voxel'))} MB | {note} |")
+        lines.append(f"| {name}: RSM 1024^2 | 22.4 MB | {megabytes(of('rsm'))} MB | the paper: two textures with mips, which nothing reads; here without mips, with depth |")
         lines.append(f"| {name}: LRSM | {layers} MB | {megabytes(of('lrsm'))} MB | |")
         lines.append(f"| {name}: total | {total} MB | {megabytes(of('voxel') + of('rsm') + of('lrsm'))} MB | |")
     for scene, name in (("sibenik", "Sibenik, 256^3"), ("sponza", "Sponza, 512^3")):
