@@ -70,8 +70,8 @@ Settings capturedSettings(const Options& options)
         return !options.settingsFile.empty() ||
                std::any_of(options.assignments.begin(), options.assignments.end(), [&](const std::string& text) { return text.starts_with(assignment); });
     };
-    if (settings.method != Method::lrsm) throw InputError("capture", "records the passes of method=lrsm alone; leave the method out, or render");
-    if (settings.cones.march.visibility != Visibility::cones) throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
+    if (settings.method == Method::lrsm && settings.cones.march.visibility != Visibility::cones)
+        throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
     if (!chosen("filter_passes=")) settings.cones.set.filterPasses = 0;
     if (settings.direct.shadows == Shadows::exact && !chosen("shadows=")) settings.direct.shadows = Shadows::hard;
     return settings;

@@ -110,7 +110,6 @@ void describeRsm(Catalogue& out, const DescribedFrame& frame, std::size_t light)
 
 void describeShadow(Catalogue& out, const DescribedFrame& frame, std::size_t light)
 {
-    if (!hasShadowMaps(frame.settings.direct)) return;
     const int n = frame.settings.rsm.resolution * frame.settings.direct.shadowResolution;
     Buffer& buffer =
         out.picture(shadowName(light), n, n, {}, {"linear depth as the RSM's, in the same frustum; 1 where empty", "light's map", ""}, tolerances::mapDepth(n));

@@ -4,7 +4,9 @@
 #include "apps/capture/picture_buffers.h"
 #include "apps/capture/scene_buffers.h"
 #include "apps/capture/tables.h"
+#include "apps/capture/vct_buffers.h"
 #include "apps/capture/voxel_buffers.h"
+#include "conetrace/vct/inject.h"
 
 #include <algorithm>
 #include <iterator>
@@ -81,6 +83,51 @@ void keepComposite(const Frame& frame, Capture& capture)
     toBuffers(frame.combined, "composite.combined", capture.buffers);
 }
 
+void keepVctSurface(const PassOutput& output, std::size_t light, Capture& capture)
+{
+    keep<PlacedSurface>(output, light, capture);
+}
+
+void keepVctBase(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* volume = output.as<RadianceVolume>()) baseToBuffers(*volume, capture.buffers);
+}
+
+void keepVctMips(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* volume = output.as<RadianceVolume>()) mipsToBuffers(*volume, capture.buffers);
+}
+
+// What of the passes a frame has.
+bool ofLrsm(const Settings& settings)
+{
+    return settings.method == Method::lrsm;
+}
+bool ofVct(const Settings& settings)
+{
+    return settings.method == Method::vct;
+}
+bool ofVctSurface(const Settings& settings)
+{
+    return ofVct(settings) && readsSurface(settings.vct);
+}
+bool readsVoxelMips(const Settings& settings)
+{
+    return ofLrsm(settings) || settings.direct.shadows == Shadows::cone;
+}
+bool comparesShadows(const Settings& settings)
+{
+    return hasShadowMaps(settings.direct);
+}
+bool filters(const Settings& settings)
+{
+    return settings.cones.set.filter;
+}
+bool smooths(const Settings& settings)
+{
+    return settings.cones.set.smoothingPasses() > 0;
+}
+
 Families readForShadows(const Settings& settings)
 {
     if (hasShadowMaps(settings.direct)) return {"shadow"};
@@ -90,46 +137,47 @@ Families readForShadows(const Settings& settings)
     return {};
 }
 
-Families readFiltered(const Settings& settings)
-{
-    return settings.cones.set.filter ? Families{"filter"} : Families{};
-}
-
-Families readSmoothed(const Settings& settings)
-{
-    return settings.cones.set.smoothingPasses() > 0 ? Families{"smooth"} : readFiltered(settings);
-}
+const std::vector<std::string> kReceivers = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"};
 
 // clang-format off
 const std::vector<PassRow> kRows = {
     {.family = "scene", .given = true, .describe = describeScene},
     {.family = "tables", .given = true, .describe = describeTables},
-    {.family = "voxelize", .stage = "voxel", .reads = {"scene"},
+    {.family = "voxelize", .stages = {"voxel"}, .reads = {"scene"},
      .describe = describeBits, .record = keepBits, .rerun = rerunVoxelize},
-    {.family = "voxel mips", .stage = "voxel", .reads = {"voxelize"},
+    {.family = "voxel mips", .stages = {"voxel"}, .exists = readsVoxelMips, .reads = {"voxelize"},
      .describe = describeVoxelMips, .record = keep<OpacityPyramid>, .rerun = rerunVoxelMips},
-    {.family = "rsm", .perLight = true, .stage = "rsm", .reads = {"scene"},
+    {.family = "rsm", .perLight = true, .stages = {"rsm"}, .reads = {"scene"},
      .describe = describeRsm, .record = keepRsm, .makeMap = makeRsm,
      .sameTexel = {"rsm#.depth", "rsm#.radiance", "rsm#.normal"}},
-    {.family = "shadow", .perLight = true, .stage = "direct", .reads = {"scene"},
+    {.family = "shadow", .perLight = true, .stages = {"direct"}, .exists = comparesShadows, .reads = {"scene"},
      .describe = describeShadow, .record = keepShadow, .rerun = rerunShadow},
-    {.family = "lrsm", .perLight = true, .stage = "layers", .reads = {"rsm"},
+    {.family = "lrsm", .perLight = true, .stages = {"layers"}, .exists = ofLrsm, .reads = {"rsm"},
      .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
+    {.family = "vct surface", .stages = {"voxel"}, .exists = ofVctSurface, .reads = {"scene", "voxelize"},
+     .describe = describeVctSurface, .record = keepVctSurface, .rerun = rerunVctSurface},
+    {.family = "vct inject", .stages = {"vct"}, .exists = ofVct, .reads = {"scene", "voxelize", "rsm", "vct surface"},
+     .describe = describeVctBase, .record = keepVctBase, .makeMap = makeVctBase},
+    {.family = "vct mips", .stages = {"vct"}, .exists = ofVct, .reads = {"vct inject"},
+     .describe = describeVctMips, .record = keepVctMips, .rerun = rerunVctMips},
     {.family = "gbuffer", .reads = {"scene"},
      .describe = describeGBuffer, .record = keep<GBuffer>, .rerun = rerunGBuffer,
      .sameTexel = {"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"}},
-    {.family = "direct", .stage = "direct", .reads = {"gbuffer"}, .readsBesides = readForShadows,
+    {.family = "direct", .stages = {"direct"}, .reads = {"gbuffer"}, .readsBesides = readForShadows,
      .describe = describeDirect, .record = keepPicture<kDirect>, .rerun = rerunDirect,
      .sameTexel = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"}},
-    {.family = "cones", .stage = "cones", .reads = {"tables", "gbuffer", "voxelize", "voxel mips", "lrsm"},
+    {.family = "cones", .stages = {"cones"}, .exists = ofLrsm, .reads = {"tables", "gbuffer", "voxelize", "voxel mips", "lrsm"},
      .describe = describeCones, .record = keepCones, .rerun = rerunCones,
-     .sameTexel = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"}},
-    {.family = "filter", .reads = {"gbuffer", "cones"},
+     .sameTexel = kReceivers},
+    {.family = "vct cones", .stages = {"cones", "vct"}, .exists = ofVct, .reads = {"tables", "gbuffer", "vct inject", "vct mips"},
+     .describe = describeCones, .record = keepCones, .rerun = rerunVctCones,
+     .sameTexel = kReceivers},
+    {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones"},
      .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
      .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
-    {.family = "smooth", .reads = {"gbuffer", "cones"}, .readsBesides = readFiltered,
+    {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "filter"},
      .describe = describeSmooth, .record = keepPicture<kSmooth>, .rerun = rerunSmooth},
-    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones"}, .readsBesides = readSmoothed,
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "filter", "smooth"},
      .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
      .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
                    "composite.specular"}},
@@ -162,6 +210,11 @@ const PassRow* findPassRow(const std::string& pass)
     return found == passRows().end() ? nullptr : &*found;
 }
 
+bool existsIn(const PassRow& row, const Settings& settings)
+{
+    return !row.exists || row.exists(settings);
+}
+
 bool isGiven(const std::string& pass)
 {
     const PassRow* row = findPassRow(pass);
@@ -176,7 +229,8 @@ std::size_t lightOfPass(const std::string& pass)
 
 HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
 {
-    return passFamily(pass) == "rsm" ? settings.rsm.halfRounding : settings.layers.halfRounding;
+    const std::string family = passFamily(pass);
+    return family == "rsm" ? settings.rsm.halfRounding : family.starts_with("vct") ? settings.vct.halfRounding : settings.layers.halfRounding;
 }
 
 std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights)
@@ -188,6 +242,7 @@ std::vector<std::string> inputsOf(const std::string& pass, const Settings& setti
     if (row->readsBesides) std::ranges::copy(row->readsBesides(settings), std::back_inserter(families));
     for (const std::string& family : families) {
         const PassRow* input = findPassRow(family);
+        if (input && !existsIn(*input, settings)) continue;
         const bool all = input && input->perLight && !row->perLight;
         for (std::size_t light = 0; light < (all ? lights : 1); ++light) inputs.push_back(input ? passName(*input, all ? light : lightOfPass(pass)) : family);
     }
@@ -218,6 +273,7 @@ std::vector<Buffer> describeBuffers(const DescribedFrame& frame)
 {
     Catalogue out;
     const auto describe = [&](const PassRow& row, std::size_t light) {
+        if (!existsIn(row, frame.settings)) return;
         out.pass = passName(row, light);
         row.describe(out, frame, light);
     };

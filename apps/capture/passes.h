@@ -12,9 +12,10 @@ namespace lrsm {
 struct PassRow {
     std::string family;
     bool perLight = false;
-    bool given = false;      ///< an input of the frame, no pass of it: never recorded from one, never run
-    std::string stage = {};  ///< of the settings that it is tried with when a candidate is wrong (SettingInfo::stage); empty: none
-    /// Families that it reads. Of one with a pass a light: its own light's if it has a light itself, else all.
+    bool given = false;                                  ///< an input of the frame, no pass of it: never recorded from one, never run
+    std::vector<std::string> stages = {};                ///< of the settings that it is tried with when a candidate is wrong (SettingInfo::stage)
+    bool (*exists)(const Settings& settings) = nullptr;  ///< has a frame by these settings the pass? nullptr: every one has
+    /// Families that it reads, where they exist. Of one with a pass a light: its own light's if it has a light itself, else all.
     std::vector<std::string> reads = {};
     std::vector<std::string> (*readsBesides)(const Settings& settings) = nullptr;
     /// Adds its buffers, empty.
@@ -36,6 +37,7 @@ const std::vector<PassRow>& passRows();
 /// The row of "rsm 0"; nullptr when there is none.
 const PassRow* findPassRow(const std::string& pass);
 bool isGiven(const std::string& pass);
+bool existsIn(const PassRow& row, const Settings& settings);
 
 /// "lrsm 1" -> 1; 0 without a number.
 std::size_t lightOfPass(const std::string& pass);

@@ -68,9 +68,8 @@ void describeCones(Catalogue& out, const DescribedFrame& frame, std::size_t)
 
 void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
-    if (frame.settings.cones.set.filter)
-        out.picture("filter.irradiance", frame.width, frame.height, kRgb,
-                    {"irradiance averaged over 4x4 pixels of the same surface", kPicture, kIrradianceUnit}, tolerances::kFilter);
+    out.picture("filter.irradiance", frame.width, frame.height, kRgb, {"irradiance averaged over 4x4 pixels of the same surface", kPicture, kIrradianceUnit},
+                tolerances::kFilter);
 }
 
 void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t)

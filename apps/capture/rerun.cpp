@@ -21,21 +21,6 @@ namespace {
 
 constexpr int kLevelsFromBits = 3;  // of directional pyramids (opacity_pyramid.h)
 
-Scene wholeScene(const Capture& inputs)
-{
-    if (!inputs.sceneComplete) throw InputError("scene", "it has textures, which a capture does not hold");
-    return sceneFromCapture(inputs);
-}
-
-/// The maps of all lights.
-template <class Map>
-std::vector<Map> mapsOf(const Capture& inputs, Map (*fromCapture)(const Capture&, std::size_t))
-{
-    std::vector<Map> maps;
-    for (std::size_t light = 0; light < inputs.lights.size(); ++light) maps.push_back(fromCapture(inputs, light));
-    return maps;
-}
-
 /// The pass's buffers as `inputs` describes them, without bytes.
 std::vector<Buffer> emptyOutputs(const Capture& inputs, const std::string& pass)
 {
@@ -49,6 +34,12 @@ std::vector<Buffer> emptyOutputs(const Capture& inputs, const std::string& pass)
 }
 
 }  // namespace
+
+Scene wholeScene(const Capture& inputs)
+{
+    if (!inputs.sceneComplete) throw InputError("scene", "it has textures, which a capture does not hold");
+    return sceneFromCapture(inputs);
+}
 
 Rerun rerunPass(const Capture& inputs, const std::string& pass)
 {
@@ -79,7 +70,7 @@ std::optional<Buffer> wideOutput(const Capture& inputs, const std::string& name)
     outputs[0].encoding = Encoding::number;
     outputs[0].bytes.clear();
     Settings settings = inputs.settings;
-    settings.rsm.storage = settings.layers.storage = Storage::float32;
+    settings.rsm.storage = settings.layers.storage = settings.vct.storage = Storage::float32;
     try {
         row->makeMap(inputs, settings, lightOfPass(described->pass), outputs);
     } catch (const InputError&) {

@@ -19,8 +19,19 @@ struct Rerun {
 /// "voxelize", "rsm i" and "gbuffer" read the scene, which must be whole (Capture::sceneComplete).
 Rerun rerunPass(const Capture& inputs, const std::string& pass);
 
-/// One output of "rsm i" or of the base level of "lrsm i" as float32, before it is converted to its storage. Nothing where that cannot be had.
+/// One output of "rsm i", of "vct inject" or of the base level of "lrsm i" as float32, before it is converted to its storage. Nothing where that cannot be had.
 std::optional<Buffer> wideOutput(const Capture& inputs, const std::string& buffer);
+
+/// The maps of all lights.
+template <class Map>
+std::vector<Map> mapsOf(const Capture& inputs, Map (*fromCapture)(const Capture&, std::size_t))
+{
+    std::vector<Map> maps;
+    for (std::size_t light = 0; light < inputs.lights.size(); ++light) maps.push_back(fromCapture(inputs, light));
+    return maps;
+}
+/// InputError where it is not all in the capture.
+Scene wholeScene(const Capture& inputs);
 
 // The passes' own, for their rows (passes.h).
 void rerunVoxelize(const Capture& inputs, std::size_t light, Rerun& made);
@@ -32,6 +43,10 @@ void rerunLrsm(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunGBuffer(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunDirect(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunCones(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunVctSurface(const Capture& inputs, std::size_t light, Rerun& made);
+void makeVctBase(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
+void rerunVctMips(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunVctCones(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunFilter(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunSmooth(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunComposite(const Capture& inputs, std::size_t light, Rerun& made);

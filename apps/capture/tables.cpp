@@ -2,6 +2,7 @@
 
 #include "apps/capture/tolerances.h"
 #include "conetrace/frame/specular_albedo.h"
+#include "conetrace/vct/gather.h"
 
 #include <algorithm>
 #include <cstring>
@@ -51,12 +52,19 @@ void addSchedules(CaptureTables& tables)
     tables.steps = tableOf("tables.schedule_steps", Dtype::u4, {all.size()}, counts);
 }
 
+/// The method's own.
+GatherPlan planOf(const Requirements& needs, const Settings& settings)
+{
+    return settings.method == Method::vct ? planVct(settings.cones, needs, settings.voxel.resolution)
+                                          : planGather(settings.cones, needs, settings.voxel.resolution);
+}
+
 }  // namespace
 
 CaptureTables makeTables(const Requirements& needs, const Settings& settings)
 {
     CaptureTables tables;
-    tables.plan = planGather(settings.cones, needs, settings.voxel.resolution);
+    tables.plan = planOf(needs, settings);
     tables.phi = NormalCdf(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize);
     const auto cones = static_cast<std::size_t>(tables.plan.cones.count);
     tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);

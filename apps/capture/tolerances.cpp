@@ -47,6 +47,10 @@ const Tolerance kFilter = relative(1e-4, kEdges, "the order of 25 additions; a n
 const Tolerance kProduct = relative(1e-5, 0.0, "float32 in another order");
 const Tolerance kSpecularPart = relative(2e-3, 0.0, "table lookup by a sampler's 8-bit fractions");
 
+const Tolerance kVoxelSurface = absolute(2e-3, kEdges, "means in another precision; a triangle that only touches a voxel is a fragment or none");
+const Tolerance kInjected = relative(2e-2, 0.01, "two steps of half; a texel on the face between two voxels falls into the one or the other");
+const Tolerance kInjectedNormal = absolute(1e-2, 0.01, "as the voxel's radiance");
+
 Tolerance voxelMip(bool unorm)
 {
     if (!unorm) return absolute(1e-6, 0.0, "the order of eight additions");

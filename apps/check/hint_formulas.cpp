@@ -291,7 +291,7 @@ void suspectFormulas(HintTrial& trial)
     static const std::map<std::string, std::vector<void (*)(HintTrial&)>> families = {
         {"rsm", {suspectRsm}},           {"lrsm", {suspectLrsm, suspectBlock, suspectLayers}}, {"gbuffer", {suspectGBuffer}},
         {"direct", {suspectShading}},    {"cones", {suspectShading, suspectGather}},           {"filter", {suspectFilter, suspectShading}},
-        {"composite", {suspectShading}},
+        {"composite", {suspectShading}}, {"vct cones", {suspectShading, suspectGather}},
     };
     if (const auto own = families.find(passFamily(trial.expected().pass)); own != families.end())
         for (const auto& suspect : own->second) suspect(trial);

@@ -37,6 +37,7 @@ const std::vector<NumericTry>& numericTries()
         {"transmittance_cutoff", {"0", "0.01", "0.05"}},
         {"density_k", {"1", "2"}},
         {"push", {"0", "1"}},
+        {"vct_facing", {"0", "0.1", "2"}},
         {"depth_bias_texels", {"0", "0.5", "0.75", "1", "2"}},
         {"shadow_cone_aperture_degrees", {"1", "2", "4"}},
         {"specular_aperture_degrees", {"5", "10", "20"}},
@@ -45,7 +46,7 @@ const std::vector<NumericTry>& numericTries()
 }
 
 /// Every other choice for every setting of the pass, one at a time: "key=value" and the settings.
-std::vector<std::pair<std::string, Settings>> otherSettings(const Settings& settings, const std::string& stage)
+std::vector<std::pair<std::string, Settings>> otherSettings(const Settings& settings, const std::vector<std::string>& stages)
 {
     std::vector<std::pair<std::string, Settings>> others;
     std::set<std::string> tried;
@@ -60,7 +61,7 @@ std::vector<std::pair<std::string, Settings>> otherSettings(const Settings& sett
         if (!(other == settings) && tried.insert(key + "=" + value).second) others.emplace_back(key + "=" + value, other);
     };
     for (const SettingInfo& info : describeSettings()) {
-        if (info.stage != stage || info.shorthand || info.key.find("storage") != std::string::npos) continue;
+        if (std::find(stages.begin(), stages.end(), info.stage) == stages.end() || info.shorthand || info.key.find("storage") != std::string::npos) continue;
         if (info.allowed.find(" | ") != std::string::npos)
             for (const std::string& value : split(info.allowed, " | ")) add(info.key, value);
         for (const NumericTry& numeric : numericTries())
@@ -85,7 +86,8 @@ std::vector<bool> choosePixels(const HintTrial& trial, std::size_t pixels)
 
 class PassSuspicions {
   public:
-    PassSuspicions(HintTrial& trial, std::string stage) : trial_(trial), expected_(trial.expected()), stage_(std::move(stage)), changed_(trial.inputs())
+    PassSuspicions(HintTrial& trial, const std::vector<std::string>& stages)
+        : trial_(trial), expected_(trial.expected()), stages_(stages), changed_(trial.inputs())
     {
         if (perPixel()) thinOut();
         for (std::size_t i = 0; i < trial.count(); ++i) before_ += chosen(i) && trial_.wrong(i) ? 1 : 0;
@@ -95,7 +97,7 @@ class PassSuspicions {
     {
         if (before_ == 0 || (!perPixel() && trial_.count() > kMostTexels)) return;
         const Settings own = changed_.settings;
-        for (const auto& [text, settings] : otherSettings(own, stage_)) {
+        for (const auto& [text, settings] : otherSettings(own, stages_)) {
             changed_.settings = settings;
             tryPass("as with " + text + " (the golden has " + valueOf(own, text) + ")");
         }
@@ -104,15 +106,15 @@ class PassSuspicions {
             tryLayers();
             tryWithoutLights();
         }
-        if (perPixel()) trySides();
-        if (expected_.pass == "cones") {
-            tryVoxels();
-            tryRotations();
-        }
+        if (perPixel() && expected_.pass != "vct cones") trySides();
+        if (expected_.pass == "cones") tryVoxels();
+        if (expected_.pass == "vct cones") tryVolumes();
+        if (traces()) tryRotations();
     }
 
   private:
-    bool perPixel() const { return expected_.pass == "cones" || expected_.pass == "direct"; }
+    bool traces() const { return expected_.pass == "cones" || expected_.pass == "vct cones"; }
+    bool perPixel() const { return traces() || expected_.pass == "direct"; }
     std::size_t pixelOf(std::size_t i) const
     {
         const std::size_t pixels = static_cast<std::size_t>(changed_.width) * static_cast<std::size_t>(changed_.height);
@@ -236,6 +238,18 @@ class PassSuspicions {
         tryChanged("the voxels' mips are read as empty", startsWith("voxel.mip"), clear);
     }
 
+    void tryVolumes()
+    {
+        tryChanged("the base's normals are not read: what faces away is lit", startsWith("vct.normal"), clear);
+        const auto exchanged = [this](Buffer& buffer) {
+            std::string name = buffer.name;
+            name[4] = name[4] == 'p' ? 'n' : 'p';  // "vct.px.mip1"
+            buffer.bytes = trial_.inputs().at(name).bytes;
+        };
+        tryChanged(
+            "the volumes of opposite directions are exchanged", [](const Buffer& b) { return b.pass == "vct mips"; }, exchanged);
+    }
+
     /// The picture upside down or mirrored: the pass is the same but for the rotations, which go by row and column.
     void tryRotations()
     {
@@ -268,7 +282,7 @@ class PassSuspicions {
 
     HintTrial& trial_;
     const Buffer& expected_;
-    const std::string stage_;
+    const std::vector<std::string>& stages_;
     Capture changed_;  ///< what the pass is run on
     std::vector<bool> chosen_;
     std::size_t before_ = 0;
@@ -279,7 +293,7 @@ class PassSuspicions {
 void suspectPass(HintTrial& trial)
 {
     const PassRow* row = findPassRow(trial.expected().pass);
-    if (row && !row->stage.empty()) PassSuspicions(trial, row->stage).run();
+    if (row && !row->stages.empty()) PassSuspicions(trial, row->stages).run();
 }
 
 }  // namespace lrsm

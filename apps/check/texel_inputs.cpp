@@ -30,7 +30,9 @@ class Inputs {
         if (row && !row->sameTexel.empty()) texelOf(row->sameTexel);
         if (buffer_.pass == "voxel mips")
             voxelChildren(level);
-        else if (buffer_.pass == "cones")
+        else if (buffer_.pass == "vct mips")
+            volumeChildren(level);
+        else if (buffer_.pass == "cones" || buffer_.pass == "vct cones")
             cones();
         else if (isMip(buffer_.name))
             level > 0 ? layerChildren(level) : rsmBlock();
@@ -77,10 +79,22 @@ class Inputs {
                                                        ", with the golden's settings"});
     }
 
+    void eightOf(const std::string& below)
+    {
+        for (std::size_t child = 0; child < 8; ++child) add(below, {2 * at_[0] + (child >> 2), 2 * at_[1] + (child >> 1 & 1), 2 * at_[2] + (child & 1)});
+    }
+
+    void volumeChildren(int level)
+    {
+        if (level > 1) return eightOf(mipName(stemOf(buffer_.name), level - 1));
+        eightOf("vct.base");
+        eightOf("vct.normal");
+    }
+
     void voxelChildren(int level)
     {
         const std::string below = level > 1 ? mipName("voxel", level - 1) : "voxel.bits";
-        for (std::size_t child = 0; child < 8; ++child) add(below, {2 * at_[0] + (child >> 2), 2 * at_[1] + (child >> 1 & 1), 2 * at_[2] + (child & 1)});
+        eightOf(below);
         if (level > 1 && level <= 3 && buffer_.components.size() == 3)
             list.push_back({"of voxel.bits", "its value counts columns of the " + std::to_string(1 << level) + "^3 voxels from z " +
                                                  std::to_string(at_[0] << level) + ", y " + std::to_string(at_[1] << level) + ", x " +

@@ -92,6 +92,7 @@ double largest(const std::vector<LightAnalysis>& lights, const Value& value)
 
 void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
+    if (settings.method != Method::lrsm) return;
     const double moved = largest(analysis.lights, [](const LightAnalysis& light) { return light.moved; });
     const double slices = largest(analysis.lights, [](const LightAnalysis& light) { return double(light.depthSlices); });
     if (settings.layers.depthLayers > 1 && slices > 1.0 && moved < kMergedDepthLimit)
@@ -99,9 +100,10 @@ void adviseLayers(const SceneAnalysis& analysis, const Settings& settings, Advis
                     "read through one layer, " + numberText(2, 100.0 * moved) + " % of the light moves in depth");
 }
 
-/// Texels of the light's map against the voxels: the finer of the two is wasted.
+/// Texels of the light's map against the voxels: the finer of the two is wasted, where voxels hold occlusion alone.
 void adviseResolutions(const SceneAnalysis& analysis, const Settings& settings, Adviser& adviser)
 {
+    if (settings.method != Method::lrsm) return;
     const double coarsest = largest(analysis.lights, [](const LightAnalysis& light) { return light.texelSize; }) / analysis.finestTap;
     double finest = kFineVoxels * 1e6;
     for (const LightAnalysis& light : analysis.lights)

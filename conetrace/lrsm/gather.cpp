@@ -216,13 +216,6 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
     return lrsms;
 }
 
-ConeRecord::ConeRecord(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings)
-    : cones(settings.set.count * settings.set.setsPerPixel),
-      diffuse(static_cast<std::size_t>(cones) * gbuffer.position.texels.size(), Vec4(0.0f)),
-      specular(needs.specular ? Image<Vec4>(gbuffer.width, gbuffer.height, Vec4(0.0f)) : Image<Vec4>())
-{
-}
-
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record, int lanes)
 {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conetrace/frame/cone_record.h"
 #include "conetrace/frame/gather.h"
 #include "lrsm/layers.h"
 
@@ -8,16 +9,6 @@ namespace lrsm {
 
 /// The pre-filtered layers of every light's map; passes "lrsm 0", "lrsm 1", ...
 std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& settings, PassLog& log);
-
-/// What each cone brought in, for captures. 0 where nothing was drawn.
-struct ConeRecord {
-    ConeRecord() = default;
-    ConeRecord(const GBuffer& gbuffer, const Requirements& needs, const ConeSettings& settings);  ///< all 0
-
-    int cones = 0;              ///< diffuse cones a pixel: count * setsPerPixel
-    std::vector<Vec4> diffuse;  ///< I (rgb) and opacity, [cone * pixels + pixel]; cones in the order of their sum
-    Image<Vec4> specular;       ///< the same of the specular cone; empty when the scene has no specular part
-};
 
 /// Final gathering (Sec. 3.2) of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
 /// Irradiance is pi * sum of weight * I over the diffuse cones, opacity their weighted mean, specular the I of the specular cone.

@@ -121,7 +121,7 @@ struct ConeSetSettings {
 struct MarchSettings {
     Visibility visibility = Visibility::cones;
     Estimator estimator = Estimator::slab;
-    float step = 0.5f;                  ///< step length over sphere diameter, (0, 2]
+    float step = 0.4f;                  ///< step length over sphere diameter, (0, 2]
     float startVoxels = 3.0f;           ///< first sample's distance along the cone, base voxels, >= 0
     float normalOffsetVoxels = 1.0f;    ///< origin off the surface along the geometric normal, base voxels, >= 0
     float minDiameterVoxels = 1.0f;     ///< smallest sphere diameter, base voxels, > 0

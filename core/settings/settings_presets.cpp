@@ -20,6 +20,7 @@ Settings literal()
     c.march.estimator = Estimator::paper;
     c.set.apertureScale = 1.0f;
     c.march.startVoxels = 1.5f;
+    c.march.step = 0.5f;
     c.set.rotation = Rotation::none;
     c.set.filter = false;
     c.march.push = 0.0f;
@@ -81,6 +82,7 @@ Settings vct()
     Settings s;
     s.method = Method::vct;
     s.voxel.resolution = 256;
+    s.cones.march.step = 0.5f;
     s.vct.injection = Injection::voxel;
     return s;
 }

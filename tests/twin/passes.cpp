@@ -24,6 +24,9 @@ constexpr Plant kPlants[] = {
     {"texel_centre", "cones", "LRSM sampled half a texel off"},
     {"light_v", "cones", "v axis of the light's map flipped"},
     {"irradiance_pi", "cones", "sum of the cones not multiplied by pi"},
+    {"vct_front", "vct mips", "the hidden texel of a column hides the other"},
+    {"vct_facing", "vct cones", "voxels that face away are lit"},
+    {"vct_direction", "vct cones", "the volume of +x for cones towards -x too"},
     {"filter_edges", "filter", "outer rows and columns count in full"},
     {"albedo", "composite", "irradiance not multiplied by albedo"},
 };
@@ -121,7 +124,8 @@ std::vector<std::string> runAll(Frame& frame, const Options& options)
         voxelize(frame, options);
     else
         leftOut.push_back("voxelize: voxelization=" + frame.setting("voxelization") + " needs conservative rasterization, which OpenGL 4.5 has not");
-    voxelMips(frame, options);
+    const bool vct = frame.is("method", "vct");
+    if (frame.has("voxel.mip1")) voxelMips(frame, options);
 
     const bool drawable = frame.manifest()["scene"]["complete"].get<bool>() && !frame.manifest()["requires"]["vertex_colors"].get<bool>();
     if (!drawable) leftOut.push_back("rsm, gbuffer: the capture holds no textures");
@@ -129,14 +133,20 @@ std::vector<std::string> runAll(Frame& frame, const Options& options)
     if (lights > 0 && frame.has("shadow0.depth")) leftOut.push_back("shadow: an RSM without its colours");
     for (int light = 0; light < lights; ++light) {
         if (drawable) rsm(frame, options, light);
-        if (layersStored(frame, light) > 0) lrsm(frame, options, light);
+        if (!vct && layersStored(frame, light) > 0) lrsm(frame, options, light);
     }
     if (drawable) gbuffer(frame, options);
     if (frame.is("shadows", "exact"))
         leftOut.push_back("direct: shadows=exact needs the scene's triangles, and no map");
     else
         direct(frame, options);
-    cones(frame, options);
+    if (vct) {
+        leftOut.push_back("vct surface, vct inject: sums over lists of texels");
+        vctMips(frame, options);
+        vctCones(frame, options);
+    } else {
+        cones(frame, options);
+    }
     if (frame.has("filter.irradiance")) filter(frame, options);
     composite(frame, options);
     return leftOut;

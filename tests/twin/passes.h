@@ -33,6 +33,8 @@ void lrsm(Frame& frame, const Options& options, int light);
 void gbuffer(Frame& frame, const Options& options);
 void direct(Frame& frame, const Options& options);
 void cones(Frame& frame, const Options& options);
+void vctMips(Frame& frame, const Options& options);
+void vctCones(Frame& frame, const Options& options);
 void filter(Frame& frame, const Options& options);
 void composite(Frame& frame, const Options& options);
 

@@ -98,6 +98,27 @@ TEST_CASE("every pass on OpenGL, fed with the golden's inputs, is within the man
     CHECK(compared > 30);
 }
 
+TEST_CASE("radiance in voxels on OpenGL, fed with the golden's volumes, is within the manifest's tolerances", "[twin][vct]")
+{
+    if (!context()) return;
+    const Golden golden = GENERATE(Golden{"cornell-glossy", "vct"}, Golden{"atrium", "vct"}, Golden{"two-rooms", "vct-paper"});
+    CAPTURE(golden.scene, golden.preset);
+    const ScratchFolder scratch;
+    twin::Frame frame(capture(scratch, golden), false);
+    twin::Programs programs;
+    CHECK(runAll(frame, {programs}) == std::vector<std::string>{"vct surface, vct inject: sums over lists of texels"});
+    std::size_t mips = 0, cones = 0;
+    for (const twin::Difference& d : twin::differences(frame)) {
+        INFO(describe(d));
+        CHECK(d.accepted());
+        if (d.pass == "vct mips") CHECK(d.differing == 0);
+        mips += d.pass == "vct mips" && d.elements > 0;
+        cones += d.pass == "vct cones" && d.elements > 0;
+    }
+    CHECK(mips == 30);
+    CHECK(cones >= 3);
+}
+
 TEST_CASE("UNORM stores and 8-bit filtering as the driver does them are within the tolerances", "[twin]")
 {
     if (!context()) return;
@@ -132,10 +153,12 @@ TEST_CASE("an error planted in a shader is named at its pass, and at no other", 
 {
     if (!context()) return;
     const ScratchFolder scratch;
-    const std::string folder = capture(scratch, {"cornell-box", "balanced"});
+    const bool vct = GENERATE(false, true);
+    const std::string folder = capture(scratch, {"cornell-box", vct ? "vct" : "balanced"});
     const Capture golden = readCapture(folder);
     twin::Programs programs;
     for (const twin::Plant& plant : twin::plants()) {
+        if (std::string(plant.pass).starts_with("vct") != vct) continue;
         twin::Frame frame(folder, true);
         runAll(frame, {programs, plant.name});
         Candidate candidate;

@@ -1,5 +1,5 @@
 // What happens in each pixel: direct light, cones, filter, composite.
-#include "tests/twin/passes.h"
+#include "tests/twin/pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,43 +9,6 @@
 namespace lrsm::twin {
 
 namespace {
-
-constexpr int kGroup = 8;
-
-/// The G-buffer's arrays at the bindings of pixel.glsl, and the camera.
-class Pixels {
-  public:
-    Pixels(Frame& frame, const Program& program) : width_(frame.width()), height_(frame.height())
-    {
-        const char* const names[] = {"position", "geometric_normal", "normal", "albedo", "object_id", "specular_color", "roughness"};
-        for (GLuint i = 0; i < (frame.specular() ? 7u : 5u); ++i) buffers_.push_back(inputBuffer(frame, std::string("gbuffer.") + names[i], i));
-        const Json& camera = frame.manifest()["camera"];
-        program.set("width", width_);
-        program.set("height", height_);
-        program.set("eye", numbers(camera["position"]));
-        program.set("forward", numbers(camera["forward"]));
-        program.set("perspective", camera["perspective"].get<bool>() ? 1 : 0);
-    }
-    std::size_t count() const { return std::size_t(width_) * std::size_t(height_); }
-    void run(const Program& program) const { program.dispatch(width_, height_, 1, kGroup, kGroup, 1); }
-
-  private:
-    int width_, height_;
-    std::vector<StorageBuffer> buffers_;
-};
-
-std::vector<std::string> specularDefine(const Frame& frame)
-{
-    return frame.specular() ? std::vector<std::string>{"SPECULAR"} : std::vector<std::string>{};
-}
-
-/// Binding of an output, all zero.
-StorageBuffer outputBuffer(std::size_t bytes, GLuint binding)
-{
-    StorageBuffer buffer = makeBuffer(bytes);
-    bindBuffer(binding, buffer);
-    return buffer;
-}
 
 /// Voxels and mips as one volume for a sampler. 16 bits a channel hold a UNORM8 exactly (v 257 / 65535 = v / 255); samplers may filter 8-bit
 /// textures in 8-bit arithmetic.
@@ -73,15 +36,6 @@ Texture opacityTexture(Frame& frame, bool eightBits)
         upload(texture, GL_TEXTURE_3D, format, level, int(m), int(m), int(m), data);
     }
     return texture;
-}
-
-void setGrid(const Frame& frame, const Program& program)
-{
-    const Json& grid = frame.manifest()["grid"];
-    program.set("origin", numbers(grid["origin"]));
-    program.set("voxelSize", grid["voxel_size"].get<float>());
-    program.set("resolution", grid["resolution"].get<int>());
-    program.set("levels", grid["levels"].get<int>());
 }
 
 /// One array texture of a buffer that every light has, its layers one after the other.
@@ -167,20 +121,6 @@ std::vector<std::string> coneDefines(const Frame& frame, const NpyArray& schedul
     return defines;
 }
 
-/// Rings, then the directions of all rotations: the buffer Tables.
-StorageBuffer coneTables(Frame& frame)
-{
-    std::vector<float> values;
-    for (const Json& ring : frame.manifest()["cones"]["rings"])
-        for (const char* key : {"first", "count", "weight", "schedule"}) values.push_back(ring[key].get<float>());
-    const NpyArray& directions = frame.input("tables.cone_directions");
-    const auto* from = reinterpret_cast<const float*>(directions.bytes.data());
-    values.insert(values.end(), from, from + directions.bytes.size() / sizeof(float));
-    StorageBuffer buffer = makeBuffer(std::as_bytes(std::span(values)));
-    bindBuffer(15, buffer);
-    return buffer;
-}
-
 }  // namespace
 
 void direct(Frame& frame, const Options& options)
@@ -231,12 +171,7 @@ void cones(Frame& frame, const Options& options)
     setGrid(frame, program);
     setGaussian(frame, program);
     program.set("lightCount", int(lights.size()));
-    program.set("coneCount", frame.whole("cone_count"));
-    program.set("setsPerPixel", frame.whole("sets_per_pixel"));
-    program.set("specularFirst", int(table["rings"].size()));
-    program.set("specularClasses", int(table["specular"].size()));
-    program.set("originOffset", frame.number("normal_offset_voxels"));
-    program.set("normalOffsetVoxels", frame.number("normal_offset_voxels"));
+    setCones(frame, program);
     program.set("varianceFloor", frame.manifest()["constants"]["variance_floor"].get<float>());
     const std::pair<const char*, const char*> reals[] = {{"push", "push"},
                                                          {"densityK", "density_k"},
@@ -248,12 +183,7 @@ void cones(Frame& frame, const Options& options)
                                                          {"rsmLevelBias", "rsm_level_bias"},
                                                          {"rsmMinLevel", "rsm_min_level"}};
     for (const auto& [uniform, key] : reals) program.set(uniform, frame.number(key));
-    std::vector<int> rotation;
-    for (const std::byte value : frame.input("tables.rotation").bytes) rotation.push_back(int(value));
-    program.setArray("rotation", rotation);
-
-    const StorageBuffer lightRecords = lightBuffer(frame), layers = layerBuffer(frame), tables = coneTables(frame),
-                        schedules = inputBuffer(frame, "tables.schedules", 11);
+    const StorageBuffer lightRecords = lightBuffer(frame), layers = layerBuffer(frame);
     const StorageBuffer phi = frame.has("tables.gaussian") ? inputBuffer(frame, "tables.gaussian", 10) : outputBuffer(4, 10);
     int layerCount = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) layerCount += layersStored(frame, int(i));
@@ -267,14 +197,7 @@ void cones(Frame& frame, const Options& options)
     bindTexture(2, depth, &sampler);
     bindTexture(3, opacity, &sampler);
 
-    const std::size_t conesAPixel = table["a_pixel"];
-    const StorageBuffer diffuse = outputBuffer(16 * conesAPixel * pixels.count(), 7), irradiance = outputBuffer(12 * pixels.count(), 12),
-                        opacityOut = outputBuffer(4 * pixels.count(), 13), specular = outputBuffer(16 * pixels.count(), 14);
-    frame.time("cones", [&] { pixels.run(program); });
-    frame.output("cones.diffuse", download(diffuse, 16 * conesAPixel * pixels.count()));
-    frame.output("cones.irradiance", download(irradiance, 12 * pixels.count()));
-    frame.output("cones.opacity", download(opacityOut, 4 * pixels.count()));
-    frame.output("cones.specular", download(specular, 16 * pixels.count()));
+    traceCones(frame, program, pixels, "cones");
 }
 
 void filter(Frame& frame, const Options& options)

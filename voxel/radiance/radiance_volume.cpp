@@ -37,14 +37,6 @@ std::vector<std::uint8_t> parents(const std::vector<std::uint8_t>& held, int edg
     return above;
 }
 
-/// Texel (x, y, z) of a brick's place.
-IVec3 texelOf(const BrickMap& map, std::size_t place, int k)
-{
-    const auto edge = std::size_t(map.edge());
-    const std::size_t brick = map.coordinate[place];
-    return {4 * int(brick % edge) + (k & 3), 4 * int(brick / edge % edge) + ((k >> 2) & 3), 4 * int(brick / (edge * edge)) + (k >> 4)};
-}
-
 /// The eight texels below one, by the level's parity: bit a of the index is the higher half along axis a.
 using Children = std::array<std::size_t, 8>;
 Children childrenOf(const BrickMap& below, const IVec3& texel)
@@ -76,8 +68,8 @@ void forTexels(const BrickMap& map, ConversionCounts& total, const Visit& visit)
     parallelFor(map.coordinate.size(), kBricksPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = std::max<std::size_t>(begin, 1); place < end; ++place)
             for (int k = 0; k < int(BrickMap::kTexels); ++k) {
-                const IVec3 texel = texelOf(map, place, k);
-                if (texel.x >= map.resolution || texel.y >= map.resolution || texel.z >= map.resolution) continue;
+                const IVec3 texel = map.texelOf(place, k);
+                if (!map.holds(texel)) continue;
                 visit(texel, place * BrickMap::kTexels + std::size_t(k), counts[begin / kBricksPerTask]);
             }
     });
@@ -85,6 +77,13 @@ void forTexels(const BrickMap& map, ConversionCounts& total, const Visit& visit)
 }
 
 }  // namespace
+
+IVec3 BrickMap::texelOf(std::size_t place, int k) const
+{
+    const auto n = std::size_t(edge());
+    const std::size_t brick = coordinate[place];
+    return {4 * int(brick % n) + (k & 3), 4 * int(brick / n % n) + ((k >> 2) & 3), 4 * int(brick / (n * n)) + (k >> 4)};
+}
 
 std::size_t RadianceVolume::predictGpuBytes(int resolution)
 {
@@ -162,27 +161,30 @@ Vec4 storedTexel(const Vec4& value, const VctSettings& settings, ConversionCount
 void buildRadianceMips(RadianceVolume& volume, const VctSettings& settings)
 {
     volume.faces.assign(volume.maps.size(), {});
-    for (std::size_t level = 1; level < volume.maps.size(); ++level) {
-        const BrickMap &map = volume.maps[level], &below = volume.maps[level - 1];
-        for (std::vector<Vec4>& face : volume.faces[level]) face.assign(map.texelCount(), Vec4(0.0f));
-        const auto fromBase = [&](int direction) {
-            return [&, direction](std::size_t child) {
-                const Vec4 texel = volume.base[child];
-                const Vec3 normal(volume.normals[child]);
-                const float nAlongD = direction & 1 ? -normal[direction / 2] : normal[direction / 2];
-                return facesAway(nAlongD, normal, settings.facing) ? Vec4(0.0f, 0.0f, 0.0f, texel.w) : texel;
-            };
+    for (std::size_t level = 1; level < volume.maps.size(); ++level) buildRadianceLevel(volume, level, settings);
+}
+
+void buildRadianceLevel(RadianceVolume& volume, std::size_t level, const VctSettings& settings)
+{
+    const BrickMap &map = volume.maps[level], &below = volume.maps[level - 1];
+    for (std::vector<Vec4>& face : volume.faces[level]) face.assign(map.texelCount(), Vec4(0.0f));
+    const auto fromBase = [&](int direction) {
+        return [&, direction](std::size_t child) {
+            const Vec4 texel = volume.base[child];
+            const Vec3 normal(volume.normals[child]);
+            const float nAlongD = direction & 1 ? -normal[direction / 2] : normal[direction / 2];
+            return facesAway(nAlongD, normal, settings.facing) ? Vec4(0.0f, 0.0f, 0.0f, texel.w) : texel;
         };
-        forTexels(map, volume.conversions, [&](const IVec3& texel, std::size_t at, ConversionCounts& counts) {
-            const Children children = childrenOf(below, texel);
-            for (int d = 0; d < kTravelDirections; ++d) {
-                const auto direction = std::size_t(d);
-                const std::vector<Vec4>& finer = volume.faces[level - 1][direction];
-                const Vec4 value = level == 1 ? filtered(children, d, fromBase(d)) : filtered(children, d, [&](std::size_t child) { return finer[child]; });
-                volume.faces[level][direction][at] = storedTexel(value, settings, counts);
-            }
-        });
-    }
+    };
+    forTexels(map, volume.conversions, [&](const IVec3& texel, std::size_t at, ConversionCounts& counts) {
+        const Children children = childrenOf(below, texel);
+        for (int d = 0; d < kTravelDirections; ++d) {
+            const auto direction = std::size_t(d);
+            const std::vector<Vec4>& finer = volume.faces[level - 1][direction];
+            const Vec4 value = level == 1 ? filtered(children, d, fromBase(d)) : filtered(children, d, [&](std::size_t child) { return finer[child]; });
+            volume.faces[level][direction][at] = storedTexel(value, settings, counts);
+        }
+    });
 }
 
 }  // namespace lrsm

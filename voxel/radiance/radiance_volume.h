@@ -30,6 +30,9 @@ struct BrickMap {
     }
     /// Of a texel inside the level. One in an absent brick gives one of the zeros.
     std::size_t texel(int x, int y, int z) const { return bricks[brickIndex(x, y, z)] * kTexels + std::size_t(BitGrid::bitIndex(x, y, z)); }
+    /// Where texel k of a place stands in the level; outside it where n is no multiple of 4.
+    IVec3 texelOf(std::size_t place, int k) const;
+    bool holds(const IVec3& texel) const { return texel.x < resolution && texel.y < resolution && texel.z < resolution; }
 };
 
 /// Directions of travel: 2 axis + (1 where towards lower coordinates): +x, -x, +y, -y, +z, -z.
@@ -92,6 +95,8 @@ RadianceVolume darkVolume(const BitGrid& bits);
 /// and a texel is ((c00 + c10) + (c01 + c11)) / 4. Each level is made from the stored level below; from the base with what faces away (n.d > facing |n|)
 /// dark but opaque.
 void buildRadianceMips(RadianceVolume& volume, const VctSettings& settings);
+/// One of these levels, from the level below as it is.
+void buildRadianceLevel(RadianceVolume& volume, std::size_t level, const VctSettings& settings);
 
 /// Does a surface of this mean normal send nothing to a cone that travels along d? `nAlongD` = n.d
 inline bool facesAway(float nAlongD, const Vec3& normal, float facing)

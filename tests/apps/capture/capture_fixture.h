@@ -1,7 +1,11 @@
 #pragma once
 
+#include "apps/capture/capture_files.h"
 #include "apps/capture/record.h"
+#include "core/base/output_folder.h"
 #include "core/scene/builtin_scenes.h"
+
+#include "scratch.h"
 
 #include <string>
 
@@ -41,6 +45,14 @@ inline const Capture& sharedGolden()
 {
     static const Capture capture = record("cornell-box", smallSettings()).capture;
     return capture;
+}
+
+inline Capture writtenAndRead(const Capture& capture, const ScratchFolder& scratch)
+{
+    OutputFolder folder(scratch.path("capture"));
+    writeCapture(folder, capture);
+    folder.commit();
+    return readCapture(scratch.path("capture"));
 }
 
 }  // namespace lrsm::test

@@ -72,14 +72,6 @@ std::vector<Variant> variants()
     return {{"cornell-box", "plain", plain}, {"two-rooms", "paper", paper}, {"atrium", "float32", wide}};
 }
 
-Capture writtenAndRead(const Capture& capture, const ScratchFolder& scratch)
-{
-    OutputFolder folder(scratch.path("capture"));
-    writeCapture(folder, capture);
-    folder.commit();
-    return readCapture(scratch.path("capture"));
-}
-
 }  // namespace
 
 TEST_CASE("capture: through files and back every pass has the hash that the frame reports", "[capture][roundtrip]")

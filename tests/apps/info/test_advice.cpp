@@ -122,6 +122,9 @@ TEST_CASE("advice: the finer of map and voxels is wasted", "[sweep][advice]")
     CHECK(adviceOn(advice, "rsm_resolution")->to == "128");  // ratio 0.117, 0.235, 0.47: halved while at most 1/2
     CHECK(adviceOn(advice, "rsm_resolution")->predictedMemoryRatio < 0.5);
     CHECK(adviceOn(advice, "voxel_resolution") == nullptr);
+    Settings lightInVoxels = settings;
+    lightInVoxels.method = Method::vct;  // reads no LRSM
+    CHECK(adviceOn(adviseSettings(scene, analysisOf(scene, lightInVoxels), lightInVoxels, 48, 27), "rsm_resolution") == nullptr);
 
     settings.rsm.resolution = 128;
     settings.voxel.resolution = 256;

@@ -1,14 +1,19 @@
 #include "apps/sweep/measure.h"
 
+#include "apps/sweep/axes.h"
+#include "conetrace/render.h"
 #include "core/base/hash.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/settings/settings_table.h"
+#include "voxel/radiance/radiance_volume.h"
 
 #include "catch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 using namespace lrsm;
 
@@ -91,6 +96,33 @@ TEST_CASE("a row holds the frame that renderFrame makes: bits, work, bytes, and 
     CHECK(row.error.noise == Approx(std::sqrt(variances / values) / (sumTruth / values)));
     CHECK(row.error.flip > 0.0);
     CHECK(row.error.flip < 1.0);
+}
+
+TEST_CASE("methods are an axis like any other: rows of both, with the passes, bytes and GPU bytes of each", "[sweep][measure][vct]")
+{
+    const SceneCase one = smallCase();
+    const TruthFigures figures = figuresOf(one.truth);
+    const std::vector<NamedSettings> product = combine(smallSettings(), {parseAxis("method=lrsm,vct"), parseAxis("voxel_resolution=16,32")});
+    REQUIRE(product.size() == 4);
+    std::set<std::string> irradiances;
+    for (const NamedSettings& named : product) {
+        CAPTURE(named.label);
+        const Measurement row = measureSettings(one, figures, named.settings, calibration(), {.repeat = 1}).row;
+        irradiances.insert(row.irradianceSha256);
+        const bool vct = named.settings.method == Method::vct;
+        const auto has = [&](const std::string& pass) {
+            return std::any_of(row.passes.begin(), row.passes.end(), [&](const auto& p) { return p.family == pass; });
+        };
+        CHECK(has("vct cones") == vct);
+        CHECK(has("lrsm") == !vct);
+        const Requirements needs = analyseRequirements(one.scene, named.settings.force);
+        std::size_t bytes = 0;
+        for (const MemoryRow& memory : predictMemory({one.scene, needs, named.settings, kWidth, kHeight})) bytes += memory.predicted;
+        CHECK(row.bytes == bytes);
+        // What a GPU needs beyond the other method's frame: the paper's dense grid.
+        if (vct) CHECK(row.gpuBytes > RadianceVolume::predictGpuBytes(named.settings.voxel.resolution));
+    }
+    CHECK(irradiances.size() == 4);
 }
 
 TEST_CASE("the noise floor is what an independent truth differs by, over sqrt 2", "[sweep][measure]")

@@ -1,0 +1,136 @@
+#include "apps/capture/passes.h"
+#include "apps/capture/rerun.h"
+#include "apps/check/check.h"
+#include "apps/check/texel_inputs.h"
+#include "core/base/formats.h"
+#include "core/settings/settings_table.h"
+#include "tests/apps/capture/capture_fixture.h"
+
+#include "catch.h"
+
+#include <algorithm>
+
+using namespace lrsm;
+using namespace lrsm::test;
+
+namespace {
+
+const Capture& vctGolden()
+{
+    static const Capture capture = [] {
+        Settings s = preset("vct");
+        s.voxel.resolution = 16;
+        s.rsm.resolution = 64;
+        s.direct.shadows = Shadows::hard;
+        return record("cornell-glossy", s).capture;
+    }();
+    return capture;
+}
+
+Candidate wholeCandidate(const Capture& capture)
+{
+    Candidate candidate;
+    candidate.folder = "candidate";
+    for (const Buffer& buffer : capture.buffers) candidate.buffers.push_back({buffer, {}, buffer.file, ""});
+    return candidate;
+}
+
+/// Half as much again of every element.
+void tooMuch(Buffer& buffer)
+{
+    for (std::size_t i = 0; i < valueCount(buffer); ++i)
+        if (buffer.dtype == Dtype::f4)
+            reinterpret_cast<float*>(buffer.bytes.data())[i] *= 1.5f;
+        else
+            reinterpret_cast<std::uint16_t*>(buffer.bytes.data())[i] = halfFromFloat(float(1.5 * decodedValue(buffer, i)), HalfRounding::nearestEven);
+}
+
+bool textHas(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+/// The candidate is what the golden's passes make with these settings, pass by pass.
+Capture madeWith(const std::string& assignment, const std::string& pass)
+{
+    Capture copy = vctGolden();
+    Capture inputs = vctGolden();
+    applySetting(inputs.settings, assignment);
+    for (Buffer& made : rerunPass(inputs, pass).outputs)
+        for (Buffer& buffer : copy.buffers)
+            if (buffer.name == made.name) buffer.bytes = std::move(made.bytes);
+    return copy;
+}
+
+std::string hintOf(const Capture& capture)
+{
+    const Candidate candidate = wholeCandidate(capture);
+    const CheckReport report = checkCandidate(vctGolden(), candidate);
+    const CheckedBuffer* wrong = report.firstWrong();
+    return wrong && !wrong->hints.empty() ? wrong->hints.front() : "";
+}
+
+}  // namespace
+
+TEST_CASE("check of method vct: a defect in any buffer of its passes is found in that buffer, and in no other", "[capture][check][vct]")
+{
+    std::vector<std::string> families;
+    for (const Buffer& buffer : vctGolden().buffers) {
+        if (!buffer.pass.starts_with("vct")) continue;
+        CAPTURE(buffer.name);
+        families.push_back(buffer.pass);
+        Capture copy = vctGolden();
+        for (Buffer& planted : copy.buffers)
+            if (planted.name == buffer.name) tooMuch(planted);
+        const Candidate candidate = wholeCandidate(copy);
+        CheckOptions options;
+        options.fromGolden = true;
+        const CheckReport report = checkCandidate(vctGolden(), candidate, options);
+        REQUIRE(report.firstWrong());
+        CHECK(report.firstWrong()->golden->name == buffer.name);
+        CHECK(textHas(report.summary(), "pass \"" + buffer.pass + "\", " + buffer.name));
+        // The defect is one buffer's. Buffers made from it stand for the golden's inputs, and are said to be wrong for these.
+        for (const CheckedBuffer& other : report.buffers)
+            if (other.verdict == Verdict::wrong && other.golden->name != buffer.name) {
+                CAPTURE(other.golden->name);
+                const std::vector<std::string> reads = inputsOf(other.golden->pass, vctGolden().settings, 1);
+                const bool follows = other.golden->pass == buffer.pass || std::find(reads.begin(), reads.end(), buffer.pass) != reads.end();
+                CHECK(follows);
+            }
+    }
+    for (const char* family : {"vct surface", "vct inject", "vct mips", "vct cones"}) CHECK(std::count(families.begin(), families.end(), family) > 1);
+}
+
+TEST_CASE("check of method vct: names the setting that a candidate has otherwise, and volumes that are exchanged", "[capture][check][vct]")
+{
+    CHECK(textHas(hintOf(madeWith("vct_facing=2", "vct mips")), "as with vct_facing=2 (the golden has 0.1)"));
+    CHECK(textHas(hintOf(madeWith("vct_weights=squared", "vct cones")), "as with vct_weights=squared (the golden has absolute)"));
+    CHECK(textHas(hintOf(madeWith("start_voxels=1", "vct cones")), "as with start_voxels=1"));
+    Capture exchanged = vctGolden();
+    for (Buffer& buffer : exchanged.buffers)
+        if (buffer.pass == "vct mips") {
+            std::string name = buffer.name;
+            name[4] = name[4] == 'p' ? 'n' : 'p';
+            buffer.bytes = vctGolden().at(name).bytes;
+        }
+    Capture cones = vctGolden();
+    for (Buffer& made : rerunPass(exchanged, "vct cones").outputs)
+        for (Buffer& buffer : cones.buffers)
+            if (buffer.name == made.name) buffer.bytes = made.bytes;
+    CHECK(textHas(hintOf(cones), "the volumes of opposite directions are exchanged"));
+}
+
+TEST_CASE("check of method vct: a texel of a mip is shown with the eight that it is made from", "[capture][check][vct]")
+{
+    const auto shown = [](const std::string& name) {
+        std::vector<std::string> names;
+        for (const TexelInput& input : inputsOf(vctGolden(), vctGolden().at(name), 0)) names.push_back(input.what);
+        return names;
+    };
+    const std::vector<std::string> above = shown("vct.nz.mip2"), first = shown("vct.nz.mip1");
+    REQUIRE(above.size() == 8);
+    CHECK(above.back() == "vct.nz.mip1, z 1, y 1, x 1");
+    REQUIRE(first.size() == 16);
+    CHECK(first.front() == "vct.base, z 0, y 0, x 0");
+    CHECK(first.back() == "vct.normal, z 1, y 1, x 1");
+}
