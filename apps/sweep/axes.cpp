@@ -59,7 +59,7 @@ Words valuesOf(const SettingInfo& info, const Settings& base)
                                                                {"aperture_scale", "1.4 1 0.7 0.5 0.35 0.25"},
                                                                {"filter_passes", "0 1 2 3"},
                                                                {"sets_per_pixel", "1 2 4"},
-                                                               {"step", "1.5 1 0.75 0.5 0.35 0.25"},
+                                                               {"step", "1.5 1 0.75 0.5 0.4 0.25"},
                                                                {"start_voxels", "1 1.5 2 3 4 6"},
                                                                {"normal_offset_voxels", "0 0.5 1 1.5 2"},
                                                                {"min_diameter_voxels", "2 1 0.5"},
@@ -241,7 +241,7 @@ std::vector<Axis> searchAxes()
     std::vector<Axis> axes;
     for (const char* text :
          {"cone_count=1,2,3,4,6,9,12,16,24,32,48", "sets_per_pixel=1,2", "voxel_resolution=128,256,512,1024", "rsm_resolution=256,512,1024,2048",
-          "depth_layers=1,2,3,4", "normal_layers=1,2,3", "step=1,0.75,0.5,0.35", "start_voxels=1.5,2,3,4", "emitter_delay_taps=1.5,2.25,3,4.5",
+          "depth_layers=1,2,3,4", "normal_layers=1,2,3", "step=1,0.75,0.5,0.4,0.3", "start_voxels=1.5,2,3,4", "emitter_delay_taps=1.5,2.25,3,4.5",
           "emitter_slant_cap=1,0.5,0.25", "rsm_level_bias=0,-0.5,-1", "aperture_scale=1,0.7,0.5,0.35", "opacity_axes=isotropic,directional",
           "voxelization=thin,conservative", "transmittance_cutoff=0.1,0.03,0.01", "voxel_level_bias=-1.5,-2,-2.5"})
         axes.push_back(parseAxis(text));

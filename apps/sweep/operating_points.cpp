@@ -9,8 +9,7 @@ namespace lrsm {
 
 namespace {
 
-/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps, and need a longer
-/// emitter delay: these go together.
+/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps: these go together.
 struct Point {
     std::string_view name, assignments;
 };
@@ -26,11 +25,11 @@ constexpr Point kPoints[] = {
     {"6 rays", "visibility=rays aperture_scale=0.0625"},
     {"9 cones, 512^3", "cone_count=9 depth_layers=3"},
     {"12 cones, 512^3", "cone_count=12 depth_layers=3"},
-    {"fine", "cone_count=16 filter_passes=1"},
+    {"fine", "cone_count=16 filter_passes=1 step=0.5"},
     {"rays", "visibility=rays cone_count=16 aperture_scale=0.0625"},
-    {"16 cones, 1024^3", "cone_count=16 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"24 cones, 1024^3", "cone_count=24 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"accurate", "cone_count=32 filter_passes=1 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"16 cones, 1024^3", "cone_count=16 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"24 cones, 1024^3", "cone_count=24 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"accurate", "cone_count=32 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
 };
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box --pixel 1", "--pixel 1"},
         {"render cornell-box extra -o out", "extra"},
         {"render cornell-box --view v.json -o out", "v.json"},
-        {"capture cornell-box -o out --preset vct", "method=lrsm"},
+        {"capture cornell-box -o out --preset rays", "take visibility=cones"},
         {"settings --preset best", "literal, fast, balanced, fine, accurate"},
     }));
     CAPTURE(c.arguments);

@@ -153,7 +153,7 @@ TEST_CASE("scaling: steps are linear in cones of one aperture, and more than lin
     }
     const ScalingResult cones = summarizeScaling(axis, runScaling(axis, 1).samples);
     CHECK(exponentOf(cones, "cones") == Approx(1.0).margin(1e-12));
-    CHECK(exponentOf(cones, "cone_steps") > 1.05);  // near the apex a segment is a voxel long, however narrow the cone
+    CHECK(exponentOf(cones, "cone_steps") > 1.02);  // more than what passes for linear above: near the apex a segment is a voxel long, however narrow the cone
     CHECK(exponentOf(cones, "cone_steps") < 1.55);
 }
 

@@ -84,7 +84,7 @@ TEST_CASE("defaults that are choices: a change of one is a change of every pictu
     CHECK(s.direct.shadowConeApertureDegrees == 2.0f);
     const ConeSettings& c = s.cones;
     CHECK((c.set.count == 6 && c.set.setsPerPixel == 1 && c.march.maxSteps == 1024 && c.gather.gaussianTableSize == 1024));
-    CHECK((c.set.apertureScale == 0.5f && c.march.step == 0.5f && c.march.startVoxels == 3.0f && c.march.normalOffsetVoxels == 1.0f &&
+    CHECK((c.set.apertureScale == 0.5f && c.march.step == 0.4f && c.march.startVoxels == 3.0f && c.march.normalOffsetVoxels == 1.0f &&
            c.march.minDiameterVoxels == 1.0f && c.march.push == 0.0f));
     CHECK((c.march.transmittanceCutoff == 0.01f && c.march.densityK == 2.0f && c.march.voxelLevelBias == -2.0f));
     CHECK((c.gather.emitterDelayTaps == 3.0f && c.gather.emitterDelayVoxels == 0.75f && c.gather.emitterSlantCap == 0.5f));
