@@ -9,7 +9,8 @@ namespace lrsm {
 
 namespace {
 
-/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps: these go together.
+/// What each point changes against `balanced`, by rising cost: from the fronts of docs/accuracy.md. Narrower cones see finer voxels and maps: these go
+/// together.
 struct Point {
     std::string_view name, assignments;
 };
