@@ -64,7 +64,6 @@ std::vector<std::string> oneAKind(const std::vector<std::string>& notes)
 std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
 {
     constexpr double kSmallShare = 0.05;
-    if (!camera.perspective) return {};
     std::vector<double> sizes(scene.meshes.size(), -1.0), met;
     for (const CoarseHit& hit : coarseView(scene, viewpointOf(camera)).hits) {
         double& size = sizes[hit.mesh];
@@ -85,7 +84,6 @@ std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
 void addContested(const Scene& scene, const Camera& camera, std::vector<std::string>& lines)
 {
     constexpr std::size_t kFew = 3;
-    if (!camera.perspective) return;
     std::vector<CoarseHit> contested;
     for (const CoarseHit& hit : coarseView(scene, viewpointOf(camera)).hits)
         if (hit.contender) contested.push_back(hit);

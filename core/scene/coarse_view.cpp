@@ -14,19 +14,26 @@ using DVec3 = glm::dvec3;
 struct Pencil {
     DVec3 position, right, up, forward;
     double halfWidth, halfHeight;
+    bool parallel;
 
     explicit Pencil(const Viewpoint& from)
         : position(from.position),
           right(glm::cross(DVec3(from.forward), DVec3(from.up))),
           up(from.up),
           forward(from.forward),
-          halfWidth(double(from.tanHalfWidth)),
-          halfHeight(double(from.tanHalfHeight))
+          halfWidth(double(from.halfWidth)),
+          halfHeight(double(from.halfHeight)),
+          parallel(from.parallel)
     {
     }
     /// Of column or row i, in [-1, 1].
     static double coordinate(int i) { return (2.0 * i + 1.0) / kCoarseEdge - 1.0; }
-    DVec3 direction(int x, int y) const { return forward + right * (coordinate(x) * halfWidth) + up * (coordinate(y) * halfHeight); }
+    DVec3 direction(int x, int y) const { return parallel ? forward : forward + aside(x, y); }
+    /// Relative to the pencil's point.
+    DVec3 origin(int x, int y) const { return parallel ? aside(x, y) : DVec3(0.0); }
+
+  private:
+    DVec3 aside(int x, int y) const { return right * (coordinate(x) * halfWidth) + up * (coordinate(y) * halfHeight); }
 };
 
 /// Columns and rows whose rays may meet a triangle, inclusive.
@@ -49,7 +56,7 @@ RayBox raysAt(const Pencil& pencil, const std::array<DVec3, 3>& corners)
     DVec3 low(1e300), high(-1e300);
     int behind = 0;
     for (const DVec3& p : corners) {
-        const double z = glm::dot(p, pencil.forward);
+        const double z = pencil.parallel ? 1.0 : glm::dot(p, pencil.forward);
         if (z > 0.0) {
             const DVec3 seen(glm::dot(p, pencil.right) / (z * pencil.halfWidth), glm::dot(p, pencil.up) / (z * pencil.halfHeight), 0.0);
             low = glm::min(low, seen);
@@ -88,7 +95,7 @@ class Caster {
             std::array<DVec3, 3> corners;
             for (std::size_t k = 0; k < 3; ++k) corners[k] = DVec3(mesh.positions[triangle[k]]) - pencil_.position;
             const DVec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-            const bool front = glm::dot(normal, corners[0]) < 0.0;
+            const bool front = glm::dot(normal, pencil_.parallel ? pencil_.forward : corners[0]) < 0.0;
             if (!front && !doubleSided) continue;
             const RayBox box = raysAt(pencil_, corners);
             for (int y = box.y0; y <= box.y1; ++y)
@@ -112,9 +119,10 @@ class Caster {
 
   private:
     /// Does the ray lie on the same side of the three planes through its origin and the triangle's edges?
-    void meet(const std::array<DVec3, 3>& p, const DVec3& normal, bool front, std::uint32_t mesh, int x, int y)
+    void meet(const std::array<DVec3, 3>& corners, const DVec3& normal, bool front, std::uint32_t mesh, int x, int y)
     {
-        const DVec3 direction = pencil_.direction(x, y);
+        const DVec3 direction = pencil_.direction(x, y), origin = pencil_.origin(x, y);
+        const std::array<DVec3, 3> p{corners[0] - origin, corners[1] - origin, corners[2] - origin};
         const double a = glm::dot(direction, glm::cross(p[1], p[0])), b = glm::dot(direction, glm::cross(p[2], p[1])),
                      c = glm::dot(direction, glm::cross(p[0], p[2]));
         if (!((a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0))) return;
@@ -133,7 +141,7 @@ class Caster {
         // Within the triangle's own bounds: rounding must not lead out of the scene's.
         const DVec3 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]);
         nearest_[i] = {.distance = t * std::sqrt(glm::dot(direction, direction)),
-                       .position = Vec3(pencil_.position + glm::clamp(direction * t, low, high)),
+                       .position = Vec3(pencil_.position + origin + glm::clamp(direction * t, low, high)),
                        .mesh = mesh,
                        .front = front,
                        .contender = contender};
@@ -162,15 +170,20 @@ class Caster {
 Viewpoint viewpointOf(const Camera& camera)
 {
     constexpr float kAspect = 16.0f / 9.0f;
-    const auto half = float(tangent(0.5 * double(camera.verticalFov)));
-    return {.position = camera.position, .forward = camera.forward, .up = camera.up, .tanHalfWidth = kAspect * half, .tanHalfHeight = half};
+    const float half = camera.perspective ? float(tangent(0.5 * double(camera.verticalFov))) : 0.5f * camera.verticalExtent;
+    return {.position = camera.position,
+            .forward = camera.forward,
+            .up = camera.up,
+            .halfWidth = kAspect * half,
+            .halfHeight = half,
+            .parallel = !camera.perspective};
 }
 
 Viewpoint viewpointOf(const Light& light)
 {
     const bool spot = light.type == LightType::spot;
     const float half = spot ? float(tangent(double(light.outerConeAngle))) : 1.0f;
-    return {.position = light.position, .forward = light.direction, .up = light.up, .tanHalfWidth = half, .tanHalfHeight = half, .round = spot};
+    return {.position = light.position, .forward = light.direction, .up = light.up, .halfWidth = half, .halfHeight = half, .round = spot};
 }
 
 CoarseView coarseView(const Scene& scene, const Viewpoint& from)

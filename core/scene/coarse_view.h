@@ -9,20 +9,21 @@
 /// for the passes.
 namespace lrsm {
 
-/// Rays of a square pencil from one point.
+/// Rays of a square pencil from one point, or side by side.
 struct Viewpoint {
     Vec3 position{0.0f};
     Vec3 forward{0.0f, 0.0f, -1.0f}, up{0.0f, 1.0f, 0.0f};  ///< unit, at right angles
-    float tanHalfWidth = 1.0f, tanHalfHeight = 1.0f;        ///< of the half angles
+    float halfWidth = 1.0f, halfHeight = 1.0f;              ///< of the rays' ends, a metre ahead; parallel: of their origins, metres
+    bool parallel = false;                                  ///< all along forward
     bool round = false;                                     ///< rays in the inscribed ellipse alone
 };
 
-/// A perspective camera, for a picture of 16:9; a spot's cone; a cube face. A directional light or an orthographic camera has no one point.
+/// A camera, for a picture of 16:9; a spot's cone; a cube face. A directional light has no one point.
 Viewpoint viewpointOf(const Camera& camera);
 Viewpoint viewpointOf(const Light& light);
 
 struct CoarseHit {
-    double distance = 0.0;  ///< metres
+    double distance = 0.0;  ///< along its ray, metres
     Vec3 position{0.0f};
     std::uint32_t mesh = 0;
     bool front = true;  ///< the ray came from the triangle's front

@@ -14,18 +14,38 @@ namespace {
 /// Vertices count within so many reaches: the far ends of what is seen.
 constexpr double kVertexReaches = 2.0;
 
-/// What is met from a viewpoint, nearest first, and the distance within which lies kReachShare of it.
+/// What is met from a viewpoint, and the distance from `centre` within which lies kReachShare of it: nearest first, distances from there.
 struct Met {
     std::vector<CoarseHit> hits;
+    Vec3 centre{0.0f};
     double reach = 0.0;
 };
+
+/// Parallel rays have no point that they come from. They have what they meet: the middle of it, axis by axis.
+Vec3 middleOf(const std::vector<CoarseHit>& hits)
+{
+    Vec3 middle(0.0f);
+    std::vector<float> places(hits.size());
+    for (int axis = 0; axis < 3 && !hits.empty(); ++axis) {
+        for (std::size_t i = 0; i < hits.size(); ++i) places[i] = hits[i].position[axis];
+        const auto median = places.begin() + std::ptrdiff_t(places.size() / 2);
+        std::nth_element(places.begin(), median, places.end());
+        middle[axis] = *median;
+    }
+    return middle;
+}
 
 Met metFrom(const Scene& scene, const Viewpoint& from, bool light)
 {
     std::vector<CoarseHit> hits = coarseView(scene, from).hits;
+    const Vec3 centre = from.parallel ? middleOf(hits) : from.position;
+    // All that lies within the picture's own size counts alike.
+    const double least = from.parallel ? double(from.halfHeight) : 1e-30;
+    if (from.parallel)
+        for (CoarseHit& hit : hits) hit.distance = glm::length(glm::dvec3(hit.position) - glm::dvec3(centre));
     std::stable_sort(hits.begin(), hits.end(), [](const CoarseHit& a, const CoarseHit& b) { return a.distance < b.distance; });
-    const auto weight = [light](const CoarseHit& hit) {
-        const double d = std::max(hit.distance, 1e-30);
+    const auto weight = [light, least](const CoarseHit& hit) {
+        const double d = std::max(hit.distance, least);
         return light ? 1.0 / (d * d) : 1.0 / std::sqrt(d);
     };
     double all = 0.0, sum = 0.0;
@@ -33,7 +53,7 @@ Met metFrom(const Scene& scene, const Viewpoint& from, bool light)
     std::size_t count = 0;
     while (count < hits.size() && sum < kReachShare * all) sum += weight(hits[count++]);
     const double reach = count > 0 ? hits[count - 1].distance : 0.0;
-    return {std::move(hits), reach};
+    return {std::move(hits), centre, reach};
 }
 
 /// Adds what is reached from one viewpoint: the vertices about it, and what its rays meet within `struckReaches` reaches.
@@ -47,7 +67,7 @@ void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, d
     for (const Mesh& mesh : scene.meshes)
         for (const auto& triangle : mesh.triangles)
             for (const std::uint32_t v : triangle) {
-                const glm::dvec3 d = glm::dvec3(mesh.positions[v]) - glm::dvec3(from.position);
+                const glm::dvec3 d = glm::dvec3(mesh.positions[v]) - glm::dvec3(met.centre);
                 if (glm::dot(d, d) <= radius * radius) box.include(mesh.positions[v]);
             }
 }
@@ -101,15 +121,14 @@ Aabb withSunlitGround(const Aabb& box, const Scene& scene)
 
 std::optional<double> reachOf(const Scene& scene, const Camera& camera)
 {
-    if (!camera.perspective) return {};
     const Met met = metFrom(scene, viewpointOf(camera), false);
     if (met.hits.empty()) return {};
-    return met.reach;
+    return glm::length(glm::dvec3(met.centre) - glm::dvec3(camera.position)) + met.reach;
 }
 
 Aabb measureReach(const Scene& scene, const Camera& camera)
 {
-    if (!camera.perspective || scene.bounds.empty()) return scene.bounds;
+    if (scene.bounds.empty()) return scene.bounds;
     const bool sun = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.type == LightType::directional && shines(l); });
 
     Aabb box;

@@ -8,8 +8,9 @@
 namespace lrsm {
 
 /// Distance, in metres, within which a camera sees kReachShare of what matters of all that it sees; a surface at distance d counts 1 / sqrt(d), so that neither
-/// a sky nor a leaf decides alone. (Of what a local light strikes, d counts 1 / d^2, as what it sends back does.) Nothing where it sees nothing, or is
-/// orthographic.
+/// a sky nor a leaf decides alone. (Of what a local light strikes, d counts 1 / d^2, as what it sends back does.) An orthographic camera sees from no
+/// point: distances count from the middle of what it meets, alike within half its picture's height, and that middle's own from the camera is added.
+/// Nothing where it sees nothing.
 std::optional<double> reachOf(const Scene& scene, const Camera& camera);
 inline constexpr double kReachShare = 0.9;
 

@@ -94,6 +94,25 @@ TEST_CASE("coarse view: a wall ahead is met by every ray, where its plane is", "
     }
 }
 
+TEST_CASE("coarse view: parallel rays meet what stands before their square, as far as it is from there", "[scene][reach]")
+{
+    Scene scene;
+    const float d = 3.0f, quarter = 0.5f;  // a wall over a quarter of the picture's width and all its height, seen along -x from (5, 1, 2)
+    addQuad(addMesh(scene, true), Vec3(5 - d, -9, 2 - quarter), Vec3(5 - d, 9, 2 - quarter), Vec3(5 - d, 9, 2 + quarter), Vec3(5 - d, -9, 2 + quarter));
+    Camera camera = lookAt(Vec3(5, 1, 2), Vec3(0, 1, 2), Vec3(0, 1, 0), 1.0f);
+    camera.perspective = false;
+    camera.verticalExtent = 4.0f * (2.0f * quarter) * 9.0f / 16.0f;
+    const CoarseView view = coarseView(scene, viewpointOf(camera));
+    CHECK(view.rays == std::size_t(kCoarseEdge) * kCoarseEdge);
+    CHECK(view.hits.size() == view.rays / 4);
+    for (const CoarseHit& hit : view.hits) {
+        CHECK(hit.distance == Approx(d));
+        CHECK(std::abs(hit.position.z - 2) <= quarter);
+        CHECK(std::abs(hit.position.y - 1) <= 0.5f * camera.verticalExtent);
+        CHECK(hit.front);
+    }
+}
+
 TEST_CASE("coarse view: as many rays meet a sphere as its solid angle says", "[scene][reach]")
 {
     Scene scene;
@@ -143,6 +162,24 @@ TEST_CASE("reach: ground, sky and stray triangles far away add nothing, in any u
         const Aabb onGround = reachAfter(ground);
         CHECK(onGround.extent().x < 3.0f * largest);  // a spot beside a wall also strikes the ground
     }
+}
+
+TEST_CASE("reach: an orthographic camera has that of what it meets, wherever it stands", "[scene][reach]")
+{
+    const float distance = GENERATE(3.0f, 3000.0f);
+    Scene scene = *makeBuiltinScene("cornell-box");
+    Camera& camera = scene.cameras[0];
+    camera.perspective = false;
+    camera.verticalExtent = scene.bounds.extent().y;
+    camera.position = scene.bounds.centre() - distance * camera.forward;
+    const Aabb alone = reachAfter(scene);
+    CHECK(alone == scene.bounds);
+    const float largest = scene.bounds.longestSide();
+    Scene stray = scene, ground = scene;
+    addStray(stray, Vec3(2000.0f * largest, 5.0f, 0.0f));
+    CHECK(reachAfter(stray) == alone);
+    addGround(ground, alone.min.y - 0.01f * largest, 1000.0f * largest);
+    CHECK(reachAfter(ground).extent().x < 3.0f * largest);
 }
 
 TEST_CASE("reach: with a sun, the ground that reflects to what is seen", "[scene][reach]")
