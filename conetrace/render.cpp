@@ -54,10 +54,11 @@ GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& o
 void finish(Frame& frame, const Camera& camera, const Settings& settings, Gathered light, PassLog& log)
 {
     frame.irradiance = std::move(light.irradiance);
-    if (light.filter4x4) frame.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(frame.irradiance, frame.gbuffer); });
-    const int passes = settings.cones.set.smoothingPasses();
-    if (light.filter4x4 && passes > 0)
-        frame.irradiance = log.run("smooth", kPicturePass, [&] { return smoothIrradiance(frame.irradiance, frame.gbuffer, passes); });
+    if (light.filter4x4) {
+        frame.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(frame.irradiance, frame.gbuffer); });
+        if (const int passes = settings.cones.set.filterPasses; passes > 0)
+            frame.irradiance = log.run("smooth", kPicturePass, [&] { return smoothIrradiance(frame.irradiance, frame.gbuffer, passes); });
+    }
     frame.combined = log.run("composite", kPicturePass, [&] {
         IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, frame.irradiance, light.specular);
         Image<Vec3> sum = composite(frame.direct, indirect);

@@ -83,11 +83,6 @@ void keepComposite(const Frame& frame, Capture& capture)
     toBuffers(frame.combined, "composite.combined", capture.buffers);
 }
 
-void keepVctSurface(const PassOutput& output, std::size_t light, Capture& capture)
-{
-    keep<PlacedSurface>(output, light, capture);
-}
-
 void keepVctBase(const PassOutput& output, std::size_t, Capture& capture)
 {
     if (const auto* volume = output.as<RadianceVolume>()) baseToBuffers(*volume, capture.buffers);
@@ -155,7 +150,7 @@ const std::vector<PassRow> kRows = {
     {.family = "lrsm", .perLight = true, .stages = {"layers"}, .exists = ofLrsm, .reads = {"rsm"},
      .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
     {.family = "vct surface", .stages = {"voxel"}, .exists = ofVctSurface, .reads = {"scene", "voxelize"},
-     .describe = describeVctSurface, .record = keepVctSurface, .rerun = rerunVctSurface},
+     .describe = describeVctSurface, .record = keep<PlacedSurface>, .rerun = rerunVctSurface},
     {.family = "vct inject", .stages = {"vct"}, .exists = ofVct, .reads = {"scene", "voxelize", "rsm", "vct surface"},
      .describe = describeVctBase, .record = keepVctBase, .makeMap = makeVctBase},
     {.family = "vct mips", .stages = {"vct"}, .exists = ofVct, .reads = {"vct inject"},

@@ -74,9 +74,8 @@ void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t)
 
 void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
-    if (frame.settings.cones.set.smoothingPasses() > 0)
-        out.picture("smooth.irradiance", frame.width, frame.height, kRgb, {"irradiance smoothed by wider taps on the same surface", kPicture, kIrradianceUnit},
-                    tolerances::kFilter);
+    out.picture("smooth.irradiance", frame.width, frame.height, kRgb, {"irradiance smoothed by wider taps on the same surface", kPicture, kIrradianceUnit},
+                tolerances::kFilter);
 }
 
 void describeComposite(Catalogue& out, const DescribedFrame& frame, std::size_t)

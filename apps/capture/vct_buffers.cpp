@@ -13,7 +13,6 @@ namespace {
 
 using Names = Catalogue::Names;
 
-constexpr std::size_t kBricksPerTask = 256;
 constexpr std::size_t kVolumeChannels = 4;
 constexpr const char *kGridSpace = "grid", *kBase = "vct.base", *kNormal = "vct.normal";
 /// In the order of RadianceVolume::faces.
@@ -22,6 +21,12 @@ constexpr std::array<const char*, kTravelDirections> kFaces = {"vct.px", "vct.nx
 std::size_t cubed(int n)
 {
     return std::size_t(n) * std::size_t(n) * std::size_t(n);
+}
+
+/// Of a texel in the dense grid of edge n.
+std::size_t denseIndex(const IVec3& at, int n)
+{
+    return (std::size_t(at.z) * std::size_t(n) + std::size_t(at.y)) * std::size_t(n) + std::size_t(at.x);
 }
 
 void addVolume(Catalogue& out, const std::string& name, int resolution, const VctSettings& settings, const Names& components, const Catalogue::Text& text,
@@ -37,16 +42,9 @@ void addVolume(Catalogue& out, const std::string& name, int resolution, const Vc
 void toDense(const BrickMap& map, const std::vector<Vec4>& texels, Buffer& buffer)
 {
     const auto each = [&]<class T>(T* to, auto&& convert) {
-        const auto n = std::size_t(map.resolution);
-        parallelFor(map.coordinate.size(), kBricksPerTask, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t place = std::max<std::size_t>(begin, 1); place < end; ++place)
-                for (int k = 0; k < int(BrickMap::kTexels); ++k) {
-                    const IVec3 at = map.texelOf(place, k);
-                    if (!map.holds(at)) continue;
-                    const Vec4& texel = texels[place * BrickMap::kTexels + std::size_t(k)];
-                    T* out = to + ((std::size_t(at.z) * n + std::size_t(at.y)) * n + std::size_t(at.x)) * kVolumeChannels;
-                    for (int c = 0; c < int(kVolumeChannels); ++c) out[c] = convert(texel[c]);
-                }
+        forTexels(map, [&](const IVec3& texel, std::size_t at, std::size_t) {
+            T* out = to + denseIndex(texel, map.resolution) * kVolumeChannels;
+            for (int c = 0; c < int(kVolumeChannels); ++c) out[c] = convert(texels[at][c]);
         });
     };
     if (buffer.dtype == Dtype::f4)
@@ -85,13 +83,8 @@ void markTexels(const std::vector<Vec4>& texels, int level, const BrickMap* held
 
 std::vector<Vec4> toBricks(const BrickMap& map, const std::vector<Vec4>& dense)
 {
-    const auto n = std::size_t(map.resolution);
     std::vector<Vec4> texels(map.texelCount(), Vec4(0.0f));
-    for (std::size_t place = 1; place < map.coordinate.size(); ++place)
-        for (int k = 0; k < int(BrickMap::kTexels); ++k) {
-            const IVec3 at = map.texelOf(place, k);
-            if (map.holds(at)) texels[place * BrickMap::kTexels + std::size_t(k)] = dense[(std::size_t(at.z) * n + std::size_t(at.y)) * n + std::size_t(at.x)];
-        }
+    forTexels(map, [&](const IVec3& texel, std::size_t at, std::size_t) { texels[at] = dense[denseIndex(texel, map.resolution)]; });
     return texels;
 }
 
@@ -99,12 +92,8 @@ std::vector<Vec4> toBricks(const BrickMap& map, const std::vector<Vec4>& dense)
 template <class Visit>
 void forSurfels(const BitGrid& bits, const VoxelIndex& index, const Visit& visit)
 {
-    const auto n = std::size_t(bits.grid.resolution);
     for (std::size_t brick = 0; brick < bits.bricks.size(); ++brick)
-        forEachBit(bits.bricks[brick], [&](int bit) {
-            const IVec3 v = voxelOf(bits, brick, bit);
-            visit((std::size_t(v.z) * n + std::size_t(v.y)) * n + std::size_t(v.x), index.at(bits, brick, bit));
-        });
+        forEachBit(bits.bricks[brick], [&](int bit) { visit(denseIndex(voxelOf(bits, brick, bit), bits.grid.resolution), index.at(bits, brick, bit)); });
 }
 
 }  // namespace

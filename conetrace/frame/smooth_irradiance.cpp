@@ -70,10 +70,10 @@ struct SmoothInput {
     int spacing;
 };
 
-/// Weight of the tap of direction d, 0 where it is not of the same surface.
+/// Weight of a linked tap, 0 where it is not of the same surface.
 float tapWeight(const SmoothInput& in, std::size_t centre, std::size_t neighbour, unsigned d)
 {
-    if ((in.links.texels[centre] & (1u << d)) == 0 || !sameSurface(in.gbuffer, centre, neighbour)) return 0.0f;
+    if (!sameSurface(in.gbuffer, centre, neighbour)) return 0.0f;
     const Vec3 between = in.gbuffer.position.texels[neighbour] - in.gbuffer.position.texels[centre];
     const float change = std::sqrt(glm::dot(between, between)) * std::max(in.nearness.texels[centre], in.nearness.texels[neighbour]);
     const float tent = kDirections[d][0] != 0 && kDirections[d][1] != 0 ? 0.25f : 0.5f;
@@ -86,11 +86,12 @@ Vec3 smoothPixel(const Image<Vec3>& irradiance, const SmoothInput& in, int x, in
     Vec3 sum = irradiance.texels[centre];
     float total = 1.0f;
     for (unsigned d = 0; d < kOpposite; ++d) {
-        const int dx = kDirections[d][0] * in.spacing, dy = kDirections[d][1] * in.spacing;
-        if (!inPicture(in.gbuffer, x + dx, y + dy) || !inPicture(in.gbuffer, x - dx, y - dy)) continue;
-        const std::size_t ahead = irradiance.index(x + dx, y + dy), behind = irradiance.index(x - dx, y - dy);
         // Both or neither, so that a gradient keeps its value.
-        const float weight = std::min(tapWeight(in, centre, ahead, d), tapWeight(in, centre, behind, d + kOpposite));
+        const unsigned both = 1u << d | 1u << (d + kOpposite);
+        if ((in.links.texels[centre] & both) != both) continue;
+        const int dx = kDirections[d][0] * in.spacing, dy = kDirections[d][1] * in.spacing;
+        const std::size_t ahead = irradiance.index(x + dx, y + dy), behind = irradiance.index(x - dx, y - dy);
+        const float weight = std::min(tapWeight(in, centre, ahead, d), tapWeight(in, centre, behind, d));
         sum += weight * (irradiance.texels[ahead] + irradiance.texels[behind]);
         total += 2.0f * weight;
     }

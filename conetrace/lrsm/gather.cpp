@@ -15,36 +15,14 @@
 namespace lrsm {
 namespace {
 
-/// Keeps whole cones' results where they are asked for; of the march itself it is told nothing.
-struct ResultRecorder : NoRecorder {
-    Vec4* next = nullptr;  ///< none: nothing is kept
-    std::size_t stride = 0;
-    void result(const ConeResult& cone)
-    {
-        if (!next) return;
-        *next = Vec4(cone.radiance, cone.opacity);
-        next += stride;
-    }
-};
+/// Of the march itself it is told nothing.
+struct ResultRecorder : NoRecorder, ConeKeeper {};
 
 /// What the tiles fill in.
 struct GatherOutput {
     Gathered& gathered;
     ConeRecord* record;  ///< may be null
     ConeCounts& counts;
-    ResultRecorder diffuseAt(std::size_t pixel) const
-    {
-        ResultRecorder recorder;
-        if (record) recorder.next = record->diffuse.data() + pixel;
-        recorder.stride = gathered.irradiance.texels.size();
-        return recorder;
-    }
-    ResultRecorder specularAt(std::size_t pixel) const
-    {
-        ResultRecorder recorder;
-        if (record) recorder.next = record->specular.texels.data() + pixel;
-        return recorder;
-    }
 };
 
 /// The pixels of one tile by Algorithm 1, one after the other.
@@ -58,13 +36,13 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         const std::size_t pixel = out.irradiance.index(x, y);
         if (!gbuffer.covered(pixel)) return;
         const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
-        ResultRecorder recorder = to.diffuseAt(pixel);
+        ResultRecorder recorder{{}, diffuseKeeper(to.record, pixel)};
         const PixelGather diffuse = gatherDiffuse<Estimator::paper>(world, sampler, plan, receiver, scratch, counts, recorder);
         out.irradiance.texels[pixel] = diffuse.irradiance;
         out.opacity.texels[pixel] = diffuse.opacity;
         if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
-        recorder = to.specularAt(pixel);
+        recorder = {{}, specularKeeper(to.record, pixel)};
         out.specular.texels[pixel] =
             gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
     });

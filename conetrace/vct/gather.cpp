@@ -14,49 +14,25 @@ namespace {
 
 struct Silent {};
 
-/// Keeps whole cones' results where they are asked for.
-struct ResultRecorder {
-    Vec4* next = nullptr;  ///< none: nothing is kept
-    std::size_t stride = 0;
-    void result(const ConeResult& cone)
-    {
-        if (!next) return;
-        *next = Vec4(cone.radiance, cone.opacity);
-        next += stride;
-    }
-};
-
-/// What the tiles fill in.
-struct GatherOutput {
-    Gathered& gathered;
-    ConeRecord* record;  ///< may be null
-    ResultRecorder diffuseAt(std::size_t pixel) const
-    {
-        return record ? ResultRecorder{record->diffuse.data() + pixel, gathered.irradiance.texels.size()} : ResultRecorder{};
-    }
-    ResultRecorder specularAt(std::size_t pixel) const { return record ? ResultRecorder{record->specular.texels.data() + pixel, 0} : ResultRecorder{}; }
-};
-
 /// The pixels of one tile.
-void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const GatherPlan& plan, int tileX, int tileY, const GatherOutput& to,
+void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const GatherPlan& plan, int tileX, int tileY, Gathered& out, ConeRecord* record,
                         ConeCounts& counts)
 {
     const GBuffer& gbuffer = input.gbuffer;
-    Gathered& out = to.gathered;
     Silent silent;
     const auto march = [&](const ConeRay& ray, const MarchSchedule& schedule) { return marchRadiance(world, ray, schedule, counts, silent); };
     forPixels(gbuffer.width, gbuffer.height, tileX, tileY, [&](int x, int y) {
         const std::size_t pixel = gbuffer.position.index(x, y);
         if (!gbuffer.covered(pixel)) return;
         const Receiver receiver = receiverAt(gbuffer, world.grid, world.cones, x, y);
-        ResultRecorder recorder = to.diffuseAt(pixel);
-        const PixelGather diffuse = gatherDiffuse(plan, world.cones.set.setsPerPixel, receiver, march, recorder);
+        ConeKeeper keeper = diffuseKeeper(record, pixel);
+        const PixelGather diffuse = gatherDiffuse(plan, world.cones.set.setsPerPixel, receiver, march, keeper);
         out.irradiance.texels[pixel] = diffuse.irradiance;
         out.opacity.texels[pixel] = diffuse.opacity;
         if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
         const Vec3 toEye = glm::normalize(directionToEye(input.camera, receiver.position));
-        recorder = to.specularAt(pixel);
-        out.specular.texels[pixel] = gatherSpecular(plan, receiver, toEye, gbuffer.roughness.texels[pixel], march, recorder);
+        keeper = specularKeeper(record, pixel);
+        out.specular.texels[pixel] = gatherSpecular(plan, receiver, toEye, gbuffer.roughness.texels[pixel], march, keeper);
     });
 }
 
@@ -95,7 +71,7 @@ Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume, C
     const GatherPlan plan = planVct(cones, input.needs, volume.resolution());
     const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = cones, .vct = input.settings.vct};
     const ConeCounts counts = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&](int tileX, int tileY, ConeCounts& tile) { gatherRadianceTile(input, world, plan, tileX, tileY, {out, record}, tile); };
+        return [&](int tileX, int tileY, ConeCounts& tile) { gatherRadianceTile(input, world, plan, tileX, tileY, out, record, tile); };
     });
     out.counters = countersOf(counts);
     return out;

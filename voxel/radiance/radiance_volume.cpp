@@ -1,15 +1,12 @@
 #include "voxel/radiance/radiance_volume.h"
 
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 
 #include <bit>
 #include <cassert>
 
 namespace lrsm {
 namespace {
-
-constexpr std::size_t kBricksPerTask = 64;
 
 BrickMap mapOf(int resolution, const std::vector<std::uint8_t>& held)
 {
@@ -60,19 +57,12 @@ Vec4 filtered(const Children& children, int direction, const Read& read)
     return 0.25f * ((column(0, 0) + column(1, 0)) + (column(0, 1) + column(1, 1)));
 }
 
-/// visit(texel, place in the arrays) for all texels of the level's held bricks; parallel, counts summed in order.
+/// visit(texel, place in the arrays, counts): counts summed in order.
 template <class Visit>
-void forTexels(const BrickMap& map, ConversionCounts& total, const Visit& visit)
+void forCountedTexels(const BrickMap& map, ConversionCounts& total, const Visit& visit)
 {
     std::vector<ConversionCounts> counts(map.coordinate.size() / kBricksPerTask + 1);
-    parallelFor(map.coordinate.size(), kBricksPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t place = std::max<std::size_t>(begin, 1); place < end; ++place)
-            for (int k = 0; k < int(BrickMap::kTexels); ++k) {
-                const IVec3 texel = map.texelOf(place, k);
-                if (!map.holds(texel)) continue;
-                visit(texel, place * BrickMap::kTexels + std::size_t(k), counts[begin / kBricksPerTask]);
-            }
-    });
+    forTexels(map, [&](const IVec3& texel, std::size_t at, std::size_t task) { visit(texel, at, counts[task]); });
     for (const ConversionCounts& task : counts) total += task;
 }
 
@@ -176,7 +166,7 @@ void buildRadianceLevel(RadianceVolume& volume, std::size_t level, const VctSett
             return facesAway(nAlongD, normal, settings.facing) ? Vec4(0.0f, 0.0f, 0.0f, texel.w) : texel;
         };
     };
-    forTexels(map, volume.conversions, [&](const IVec3& texel, std::size_t at, ConversionCounts& counts) {
+    forCountedTexels(map, volume.conversions, [&](const IVec3& texel, std::size_t at, ConversionCounts& counts) {
         const Children children = childrenOf(below, texel);
         for (int d = 0; d < kTravelDirections; ++d) {
             const auto direction = std::size_t(d);

@@ -2,9 +2,11 @@
 
 #include "core/base/counters.h"
 #include "core/base/formats.h"
+#include "core/base/parallel.h"
 #include "core/settings/settings.h"
 #include "voxel/bit_grid.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -34,6 +36,20 @@ struct BrickMap {
     IVec3 texelOf(std::size_t place, int k) const;
     bool holds(const IVec3& texel) const { return texel.x < resolution && texel.y < resolution && texel.z < resolution; }
 };
+
+/// visit(texel, place in the arrays, task) for all texels of the level's held bricks, in parallel: tasks from 0 on, each of its own bricks whatever the
+/// threads.
+inline constexpr std::size_t kBricksPerTask = 64;
+template <class Visit>
+void forTexels(const BrickMap& map, const Visit& visit)
+{
+    parallelFor(map.coordinate.size(), kBricksPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = std::max<std::size_t>(begin, 1); place < end; ++place)
+            for (int k = 0; k < int(BrickMap::kTexels); ++k)
+                if (const IVec3 texel = map.texelOf(place, k); map.holds(texel))
+                    visit(texel, place * BrickMap::kTexels + std::size_t(k), begin / kBricksPerTask);
+    });
+}
 
 /// Directions of travel: 2 axis + (1 where towards lower coordinates): +x, -x, +y, -y, +z, -z.
 inline constexpr int kTravelDirections = 6;

@@ -2,11 +2,13 @@
 
 #include "apps/capture/capture_files.h"
 #include "apps/capture/record.h"
+#include "conetrace/render.h"
 #include "core/base/output_folder.h"
 #include "core/scene/builtin_scenes.h"
 
 #include "scratch.h"
 
+#include <map>
 #include <string>
 
 namespace lrsm::test {
@@ -45,6 +47,24 @@ inline const Capture& sharedGolden()
 {
     static const Capture capture = record("cornell-box", smallSettings()).capture;
     return capture;
+}
+
+/// Of each pass of the frame that renderFrame makes of the same.
+inline std::map<std::string, std::string> renderedHashes(const Recording& r)
+{
+    RenderOptions options;
+    options.width = r.options.width;
+    options.height = r.options.height;
+    std::map<std::string, std::string> hashes;
+    for (const PassReport& pass : renderFrame(r.scene, r.scene.cameras.at(0), r.settings, options).passes) hashes[pass.name] = pass.sha256;
+    return hashes;
+}
+
+inline std::map<std::string, std::string> hashesOf(const Capture& capture)
+{
+    std::map<std::string, std::string> hashes;
+    for (const CapturedPass& pass : capture.passes) hashes[pass.name] = pass.sha256;
+    return hashes;
 }
 
 inline Capture writtenAndRead(const Capture& capture, const ScratchFolder& scratch)

@@ -6,6 +6,7 @@
 #include "core/base/formats.h"
 #include "core/base/output_folder.h"
 #include "tests/apps/capture/capture_fixture.h"
+#include "tests/apps/check/check_fixture.h"
 
 #include "catch.h"
 #include "scratch.h"
@@ -28,17 +29,6 @@ Buffer* bufferIn(Capture& capture, const std::string& name)
     return &*found;
 }
 
-/// A candidate in memory: these buffers of a capture.
-Candidate candidateOf(
-    const Capture& capture, const std::function<bool(const Buffer&)>& has = [](const Buffer&) { return true; })
-{
-    Candidate candidate;
-    candidate.folder = "candidate";
-    for (const Buffer& buffer : capture.buffers)
-        if (has(buffer)) candidate.buffers.push_back({buffer, {}, buffer.file, ""});
-    return candidate;
-}
-
 const CheckedBuffer& checkedIn(const CheckReport& report, const std::string& name)
 {
     for (const CheckedBuffer& b : report.buffers)
@@ -57,37 +47,6 @@ CheckReport plantIn(const std::string& name, const Change& change)
     change(*bufferIn(copy, name));
     kept.push_back(candidateOf(copy, [&](const Buffer& b) { return b.name == name; }));
     return checkCandidate(sharedGolden(), kept.back());
-}
-
-std::uint16_t* codesOf(Buffer& b)
-{
-    return reinterpret_cast<std::uint16_t*>(b.bytes.data());
-}
-float* floatsOf(Buffer& b)
-{
-    return reinterpret_cast<float*>(b.bytes.data());
-}
-
-/// Sets every value from the golden's values, through the storage.
-template <class Formula>
-void recompute(Buffer& buffer, const Formula& formula)
-{
-    const Buffer before = buffer;
-    for (std::size_t i = 0; i < valueCount(before); ++i) {
-        const double value = formula(before, i);
-        if (buffer.dtype == Dtype::f4)
-            floatsOf(buffer)[i] = static_cast<float>(value);
-        else if (buffer.dtype == Dtype::f2)
-            codesOf(buffer)[i] = halfFromFloat(static_cast<float>(value), HalfRounding::nearestEven);
-        else if (buffer.dtype == Dtype::u2)
-            codesOf(buffer)[i] = unorm16FromFloat(static_cast<float>(value));
-        else if (buffer.encoding == Encoding::unorm)
-            buffer.bytes[i] = std::byte(unorm8FromFloat(static_cast<float>(value)));
-        else if (value != 0.0)
-            buffer.bytes[i / 8] |= std::byte(1u << (i & 7));
-        else
-            buffer.bytes[i / 8] &= ~std::byte(1u << (i & 7));
-    }
 }
 
 std::string firstHint(const CheckReport& report)

@@ -2,9 +2,9 @@
 #include "apps/capture/rerun.h"
 #include "apps/check/check.h"
 #include "apps/check/texel_inputs.h"
-#include "core/base/formats.h"
 #include "core/settings/settings_table.h"
 #include "tests/apps/capture/capture_fixture.h"
+#include "tests/apps/check/check_fixture.h"
 
 #include "catch.h"
 
@@ -27,22 +27,10 @@ const Capture& vctGolden()
     return capture;
 }
 
-Candidate wholeCandidate(const Capture& capture)
-{
-    Candidate candidate;
-    candidate.folder = "candidate";
-    for (const Buffer& buffer : capture.buffers) candidate.buffers.push_back({buffer, {}, buffer.file, ""});
-    return candidate;
-}
-
 /// Half as much again of every element.
 void tooMuch(Buffer& buffer)
 {
-    for (std::size_t i = 0; i < valueCount(buffer); ++i)
-        if (buffer.dtype == Dtype::f4)
-            reinterpret_cast<float*>(buffer.bytes.data())[i] *= 1.5f;
-        else
-            reinterpret_cast<std::uint16_t*>(buffer.bytes.data())[i] = halfFromFloat(float(1.5 * decodedValue(buffer, i)), HalfRounding::nearestEven);
+    recompute(buffer, [](const Buffer& before, std::size_t i) { return 1.5 * decodedValue(before, i); });
 }
 
 bool textHas(const std::string& text, const std::string& part)
@@ -64,7 +52,7 @@ Capture madeWith(const std::string& assignment, const std::string& pass)
 
 std::string hintOf(const Capture& capture)
 {
-    const Candidate candidate = wholeCandidate(capture);
+    const Candidate candidate = candidateOf(capture);
     const CheckReport report = checkCandidate(vctGolden(), candidate);
     const CheckedBuffer* wrong = report.firstWrong();
     return wrong && !wrong->hints.empty() ? wrong->hints.front() : "";
@@ -82,7 +70,7 @@ TEST_CASE("check of method vct: a defect in any buffer of its passes is found in
         Capture copy = vctGolden();
         for (Buffer& planted : copy.buffers)
             if (planted.name == buffer.name) tooMuch(planted);
-        const Candidate candidate = wholeCandidate(copy);
+        const Candidate candidate = candidateOf(copy);
         CheckOptions options;
         options.fromGolden = true;
         const CheckReport report = checkCandidate(vctGolden(), candidate, options);
