@@ -97,6 +97,26 @@ TEST_CASE("smoothing: a gradient stays as it is up to the corner", "[conetrace][
         for (int c = 0; c < 3; ++c) REQUIRE(out.texels[i][c] == Approx(in.texels[i][c]).epsilon(1e-5));
 }
 
+TEST_CASE("smoothing: a mirrored picture is smoothed to the mirrored one", "[conetrace][smooth]")
+{
+    const auto mirrored = [](const auto& image) {
+        auto out = image;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) out.at(x, y) = image.at(image.width - 1 - x, y);
+        return out;
+    };
+    const GBuffer g = corner(96, 48, 64);
+    GBuffer turned = g;
+    turned.position = mirrored(g.position);
+    turned.normal = turned.geometricNormal = mirrored(g.normal);
+    Image<Vec3> in(96, 48);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) in.at(x, y) = Vec3(float(x * x), float((x * 7 + y * 3) % 11), 1.0f);
+    const Image<Vec3> out = smoothIrradiance(in, g, 3), back = mirrored(smoothIrradiance(mirrored(in), turned, 3));
+    for (std::size_t i = 0; i < out.texels.size(); ++i)
+        for (int c = 0; c < 3; ++c) REQUIRE(back.texels[i][c] == Approx(out.texels[i][c]).epsilon(1e-5).margin(1e-5));
+}
+
 TEST_CASE("smoothing: nearness falls with the distance of a wall, and an open floor has none", "[conetrace][smooth]")
 {
     // Scaling the world scales distances: nearness times size is the same.
