@@ -58,6 +58,12 @@ once() {
     fi
 }
 
+# judge RESULT TEST REFERENCE: energy and RMSE of the indirect light's two layers, into RESULT.json.
+judge() {
+    "$lrsm" compare "$2" "$3" --layer irradiance --layer indirect.specular --json --quiet >"$1.part"
+    mv "$1.part" "$1.json"
+}
+
 # Figure 7, and what it is judged by.
 for scene in sibenik sponza; do
     eval "voxels=\$voxels_$scene"
@@ -66,6 +72,7 @@ for scene in sibenik sponza; do
     stops=$(sed -n 's/.*"exposure_stops": *\([-0-9.]*\).*/\1/p' "$out/fig7/$scene/reference/frame.json")
     for preset in $presets; do
         once "$out/fig7/$scene/$preset" "$lrsm" render "$out/views/$scene.json" --size $size --preset "$preset" --set voxel_resolution=$voxels --exposure "$stops"
+        judge "$out/fig7/$scene/$preset" "$out/fig7/$scene/$preset" "$out/fig7/$scene/reference"
     done
 done
 
@@ -94,6 +101,7 @@ for level in 0 2 4; do
     for step in 0 1 2; do
         once "$out/fig8/level$level/$step" "$lrsm" render "$out/views/sponza-sun$step.json" --size $size --set rsm_min_level=$level --exposure 0
     done
+    judge "$out/fig8/level$level" "$out/fig8/level$level/1" "$out/fig7/sponza/reference"
 done
 
 # The trade: both methods at three resolutions. A sweep goes on by itself.

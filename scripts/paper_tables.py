@@ -42,16 +42,19 @@ def chroma(pixel):
     return max(pixel) - min(pixel)
 
 
-def judge(test, truth):
-    """Energy and RMSE over the mean, light in pixels that are dark in truth over the truth's mean, colour kept."""
+def leak_and_colour(test, truth):
+    """Light in pixels that are dark in truth over the truth's mean, with the truth's own; colour kept."""
     lit = [i for i, p in enumerate(truth) if sum(p) > 0.0 or sum(test[i]) > 0.0]
     mean = sum(luminance(truth[i]) for i in lit) / len(lit)
-    energy = sum(luminance(test[i]) for i in lit) / sum(luminance(truth[i]) for i in lit)
-    rmse = (sum((luminance(test[i]) - luminance(truth[i])) ** 2 for i in lit) / len(lit)) ** 0.5 / mean
     dark = [i for i in lit if luminance(truth[i]) < DARK * mean]
-    leak = (sum(luminance(test[i]) for i in dark) / len(dark) / mean, sum(luminance(truth[i]) for i in dark) / len(dark) / mean, len(dark) / len(lit)) if dark else None
+    leak = tuple(sum(luminance(of[i]) for i in dark) / len(dark) / mean for of in (test, truth)) if dark else None
     colour = sum(chroma(test[i]) for i in lit) / sum(chroma(truth[i]) for i in lit)
-    return energy, rmse, leak, colour
+    return leak, colour
+
+
+def judged(*path):
+    """What `lrsm compare` says of each layer."""
+    return {found["layer"]: found for found in load(*path)["layers"]}
 
 
 def figure7(out, images, presets):
@@ -66,15 +69,14 @@ def figure7(out, images, presets):
             cells.append(f"![{name}](images/{target})")
         pictures.append(f"| {scene.capitalize()} | " + " | ".join(cells) + " |")
         truth = layer(os.path.join(folder, "reference"), "irradiance")
-        gloss = layer(os.path.join(folder, "reference"), "indirect.specular")
         rows = {"energy / RMSE over mean": [], "light in dark pixels": [], "colour": [], "glossy: energy / RMSE": []}
         for preset in presets:
-            energy, rmse, leak, colour = judge(layer(os.path.join(folder, preset), "irradiance"), truth)
-            rows["energy / RMSE over mean"].append(f"{energy:.2f} / {rmse:.2f}")
+            found = judged(folder, f"{preset}.json")
+            for row, name in (("energy / RMSE over mean", "irradiance"), ("glossy: energy / RMSE", "indirect.specular")):
+                rows[row].append(f"{found[name]['energy_ratio']:.2f} / {found[name]['rmse_over_mean']:.2f}")
+            leak, colour = leak_and_colour(layer(os.path.join(folder, preset), "irradiance"), truth)
             rows["light in dark pixels"].append(f"{100 * leak[0]:.1f} % ({100 * leak[1]:.1f})" if leak else "none are dark")
             rows["colour"].append(f"{colour:.2f}")
-            energy, rmse, _, _ = judge(layer(os.path.join(folder, preset), "indirect.specular"), gloss)
-            rows["glossy: energy / RMSE"].append(f"{energy:.2f} / {rmse:.2f}")
         for name, values in rows.items():
             numbers.append(f"| {scene.capitalize()} | {name} | " + " | ".join(values) + " |")
     return pictures, numbers
@@ -159,7 +161,7 @@ def figure8(out, images):
         error, flicker = {}, {}
         for name in truth:
             before, now, after = (layer(os.path.join(folder, step), name) for step in "012")
-            error[name] = judge(now, truth[name])[1]
+            error[name] = judged(out, "fig8", f"level{level}.json")[name]["rmse_over_mean"]
             second = sum(abs(luminance(a) - 2.0 * luminance(b) + luminance(c)) for a, b, c in zip(before, now, after))
             flicker[name] = second / sum(luminance(p) for p in truth[name])
         lines.append(f"| {level} | ![level {level}](images/{target}) | {error['indirect.specular']:.2f} | {error['irradiance']:.3f} | "
