@@ -92,9 +92,12 @@ std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, cons
     return found;
 }
 
-void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, std::uint64_t invalidSamples)
+void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, const SampleFaults& faults)
 {
-    if (invalidSamples > 0) say({std::to_string(invalidSamples) + " values were not finite and count as 0"});
+    if (faults.notFinite > 0) say({std::to_string(faults.notFinite) + " values were not finite and count as 0"});
+    if (faults.clamped > 0)
+        say({std::to_string(faults.clamped) + " values of paths were above 2^24 times the scene's unit of radiance and count as that: the picture is too dark "
+                                              "where a path finds something that bright"});
     Image<Vec3> position(seen.depth.width, seen.depth.height), normal = position;
     for (std::size_t i = 0; i < position.texels.size(); ++i) {
         position.texels[i] = seen.surface.texels[i].position;
@@ -157,7 +160,7 @@ int runReference(const ReferenceArguments& options)
     const ReferenceFrame picture = writeReference(folder, checkpoint, seenLayers(scene, tracer.primary()), json, exposure);
     folder.commit();
 
-    saySeen(scene, tracer.primary(), picture, checkpoint.state.invalidSamples);
+    saySeen(scene, tracer.primary(), picture, checkpoint.state.faults);
     if (options.json)
         std::cout << jsonText(json);
     else if (!options.quiet) {
