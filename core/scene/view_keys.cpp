@@ -75,15 +75,13 @@ std::vector<double> keyTimesOf(const JsonReader& thing, const KeyedNames& names)
     allowed.insert(allowed.begin(), "time");
     for (const JsonReader& key : thing["keys"].items()) {
         for (const auto& [name, value] : key.members())
-            if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
-                key.fail("unknown key " + Json(name).dump() + "; known: " + joined(allowed));
+            if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) key.fail("unknown key " + Json(name).dump() + "; known: " + joined(allowed));
         times.push_back(key["time"].number(-kLatestSecond, kLatestSecond));
         if (times.size() > 1 && !(times.back() > times[times.size() - 2]))
             key.fail("time", "must be later than the key before, at " + Json(times[times.size() - 2]).dump() + " s");
         if (key.object().size() == 1) key.fail("has a time and nothing else; give " + joined(names, {}, ", or "));
         for (const std::string_view name : names)
-            if (key.has(std::string(name)) && thing.has(std::string(name)))
-                thing.fail(std::string(name), "is given by the keys too; leave out one");
+            if (key.has(std::string(name)) && thing.has(std::string(name))) thing.fail(std::string(name), "is given by the keys too; leave out one");
     }
     if (times.empty()) thing.fail("keys", "is empty");
     return times;

@@ -14,8 +14,8 @@ std::string liftedTriangle()
 {
     GltfBuilder file;
     const int times = file.add<float>({0, 2}, "SCALAR", 5126), places = file.add<float>({0, 0, 0, 0, 2, 0}, "VEC3", 5126);
-    file.json["animations"] = {{{"samplers", {{{"input", times}, {"output", places}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    file.json["animations"] = {
+        {{"samplers", {{{"input", times}, {"output", places}}}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
     return file.glb();
 }
 
@@ -54,7 +54,8 @@ TEST_CASE("numbers follow their keys, linear in time, and hold at the ends; a ke
         CHECK(light.intensity == Vec3(e.intensity));
     }
     // At a key it is the key's own number, whatever stands beside it.
-    const std::string odd = viewOf(R"("lights": [{"type": "directional", "direction": [0, -1, 0], "keys": [{"time": 0, "intensity": 1e9}, {"time": 0.1, "intensity": 0.3},
+    const std::string odd =
+        viewOf(R"("lights": [{"type": "directional", "direction": [0, -1, 0], "keys": [{"time": 0, "intensity": 1e9}, {"time": 0.1, "intensity": 0.3},
         {"time": 0.3, "intensity": 0.3}, {"time": 7, "intensity": 5e8}]}])");
     for (const double time : {0.1, 0.17, 0.2, 0.3}) CHECK(parseView(odd, "view.json", {}, time).lights->at(0).intensity.x == 0.3f);
 }
@@ -180,8 +181,8 @@ TEST_CASE("every mistake in keys and objects is one line that names the place", 
         CHECK(said.find('\n') == std::string::npos);
     }
     // Between two sound keys: found when that moment is asked for.
-    const SceneSource source = openScene(
-        folder.write("view.json", light(R"("keys": [{"time": 0, "direction": [0, -1, 0]}, {"time": 2, "direction": [0, 1, 0]}])")), {});
+    const SceneSource source =
+        openScene(folder.write("view.json", light(R"("keys": [{"time": 0, "direction": [0, -1, 0]}, {"time": 2, "direction": [0, 1, 0]}])")), {});
     CHECK_NOTHROW(checkMoment(source, 0.5f));
     CHECK_THROWS_AS(checkMoment(source, 1.0f), InputError);
 }
