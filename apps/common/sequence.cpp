@@ -43,7 +43,8 @@ Json commonOf(const SequenceJob& job, const SceneSource& source, const CommonOpt
 Json entryOf(const SequenceFrame& frame, const std::string& sequence)
 {
     const std::string camera = cameraJson(frame.camera, Angle::radians, frame.scene.origin).dump(-1, ' ', false, Json::error_handler_t::replace);
-    return {{"frame", frame.index}, {"time", frame.time}, {"sequence", sequence}, {"scene_sha256", frame.sceneHash}, {"camera_sha256", Sha256().add(camera).hex()}};
+    return {
+        {"frame", frame.index}, {"time", frame.time}, {"sequence", sequence}, {"scene_sha256", frame.sceneHash}, {"camera_sha256", Sha256().add(camera).hex()}};
 }
 
 /// The entry of a complete frame; empty where there is none.
@@ -140,8 +141,8 @@ void sayHint(const SequenceJob& job)
 
 void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments)
 {
-    CLI::Option* frames = parser.add_option("--frames", arguments.frames,
-                                            "A:B: frames A .. B-1, each in a folder of its own, DIR/0000 ..., and DIR/sequence.json; what is there already is kept");
+    CLI::Option* frames = parser.add_option(
+        "--frames", arguments.frames, "A:B: frames A .. B-1, each in a folder of its own, DIR/0000 ..., and DIR/sequence.json; what is there already is kept");
     parser.add_option("--fps", arguments.fps, "frames a second: frame i is at i / fps seconds")->needs(frames)->capture_default_str();
     frames->excludes("--time");
 }
@@ -181,7 +182,12 @@ int runSequence(const SequenceJob& job, const CommonOptions& options)
     bool interrupted = false;
     for (int i = job.range.begin; i < job.range.end && !interrupted; ++i) {
         const Scene scene = poseChosenScene(source, options, job.range.time(i));
-        const SequenceFrame frame{.index = i, .time = job.range.time(i), .scene = scene, .camera = chosenCamera(scene, options), .sceneHash = hashScene(scene), .stop = catching.asked()};
+        const SequenceFrame frame{.index = i,
+                                  .time = job.range.time(i),
+                                  .scene = scene,
+                                  .camera = chosenCamera(scene, options),
+                                  .sceneHash = hashScene(scene),
+                                  .stop = catching.asked()};
         const fs::path path = fs::path(job.folder) / frameName(i);
         const Json entry = entryOf(frame, sequence), found = readEntry(path, job.mainFile);
         if (isKept(found, entry, path, job.mainFile)) {

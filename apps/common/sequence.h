@@ -14,8 +14,8 @@
 /// Many moments of one scene, a folder each: `--frames A:B --fps F -o DIR` makes DIR/0000/..., and DIR/sequence.json lists them.
 ///
 /// Frame i is the picture at time i / F and hangs on nothing else: whichever frames are made beside it, before it or elsewhere, it has the same bits. A frame's
-/// folder appears when it is complete, with kFrameFile in it, which says what it was made from; frames already there of the same input and settings are kept, so
-/// that an interrupted run goes on, and parts made on several machines are put together by copying their folders into one.
+/// folder appears when it is complete, with kFrameFile in it, which says what it was made from; frames already there of the same input and settings are kept,
+/// so that an interrupted run goes on, and parts made on several machines are put together by copying their folders into one.
 namespace lrsm {
 
 inline constexpr const char* kSequenceFile = "sequence.json";

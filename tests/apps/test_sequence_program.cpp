@@ -19,7 +19,8 @@ const std::string kTinyFrames = " --size 32x24 --set voxel_resolution=32 --set r
 void writeMovingView(const Sandbox& box, const std::string& second = "[0.5, 0, 0.5]")
 {
     std::ofstream(box.here() / "view.json") << R"({"scene": "cornell-box", "lights": [{"type": "spot", "position": [0, 1.9, 0], "intensity": 5,
-        "keys": [{"time": 0, "target": [0, 0, 0]}, {"time": 1, "target": )" << second << "}]}]}";
+        "keys": [{"time": 0, "target": [0, 0, 0]}, {"time": 1, "target": )"
+                                            << second << "}]}]}";
 }
 
 std::string frameBytes(const Sandbox& box, const std::string& name)
@@ -64,7 +65,8 @@ TEST_CASE("program: frames that are complete and of the same input are kept, oth
     const std::string command = "render view.json --frames 0:3 --fps 4 -o out" + kTinyFrames;
     REQUIRE(box.run(command).code == 0);
     std::vector<std::string> before, stamps;
-    for (const char* name : {"out/0000", "out/0001", "out/0002"}) before.push_back(frameBytes(box, name)), stamps.push_back(readText(box.here() / name / "frame.json"));
+    for (const char* name : {"out/0000", "out/0001", "out/0002"})
+        before.push_back(frameBytes(box, name)), stamps.push_back(readText(box.here() / name / "frame.json"));
 
     // One frame lost, one damaged, one half-written as a kill leaves it.
     fs::remove_all(box.here() / "out" / "0000");
@@ -137,4 +139,103 @@ TEST_CASE("program: what is wrong with --frames is one line", "[apps][sequence]"
         CHECK(contains(outcome.err, message));
         CHECK_FALSE(fs::exists(box.here() / "out"));
     }
+}
+
+namespace {
+
+/// Frames whose irradiance is picture * gain(frame), as another engine might write them: nothing but the layer.
+template <class Gain>
+void writeFrames(const Sandbox& box, const std::string& name, int frames, const Gain& gain)
+{
+    for (int t = 0; t < frames; ++t) {
+        Image<Vec3> picture(40, 30);
+        for (std::size_t i = 0; i < picture.texels.size(); ++i) picture.texels[i] = Vec3(float(1 + i % 7), float(1 + i % 3), 2.0f) * float(gain(t));
+        LayeredImage image;
+        addLayer(image, "irradiance", picture);
+        const fs::path folder = box.here() / name / ("000" + std::to_string(t));
+        fs::create_directories(folder);
+        const std::vector<std::byte> bytes = encodeExr(image);
+        std::ofstream(folder / "image.exr", std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("program: compare --sequence finds a planted pop with its frame, and nothing where nothing flickers", "[apps][sequence]")
+{
+    const Sandbox box;
+    writeFrames(box, "still", 6, [](int) { return 1.0; });
+    writeFrames(box, "wrong", 6, [](int) { return 1.5; });
+    writeFrames(box, "pop", 6, [](int t) { return t == 3 ? 1.02 : 1.0; });
+    writeFrames(box, "fade", 7, [](int t) { return 1.0 - t / 16.0; });
+
+    const Json wrong = Json::parse(box.run("compare --sequence wrong still --json").out)["layers"][0];
+    for (const char* metric : {"f", "fe", "v", "j"}) CHECK(wrong[metric] == 0.0);
+    CHECK(wrong["layer"] == "irradiance");
+    CHECK(wrong["frames"][4]["rmse_over_mean"] > 0.5);
+
+    const Json fade = Json::parse(box.run("compare --sequence fade still --json").out);
+    CHECK(fade["layers"][0]["f"] == 0.0);
+    CHECK(fade["layers"][0]["fe"] == 0.0);
+    CHECK(fade["layers"][0]["j"] > 0.0);
+    CHECK(contains(fade["notes"][0].get<std::string>(), "1 frames of fade have no counterpart"));
+
+    const Outcome pop = box.run("compare --sequence pop still -o out --fail-above fe=0.001 --fail-above v=1");
+    CHECK(pop.code == 1);
+    CHECK(contains(pop.err, "irradiance: fe = "));
+    CHECK(isOneLine(pop.err));
+    CHECK(contains(pop.out, "worst: frame 3"));
+    const Json json = Json::parse(readText(box.here() / "out" / "compare.json"))["layers"][0];
+    CHECK(json["worst_frame"] == 3);
+    CHECK(json["worst_jump_into"] == 3);
+    CHECK(json["f_reference"] == 0.0);
+    CHECK(json["fe"].get<double>() == Approx(0.02 * 4 / 4));
+    const std::string page = readText(box.here() / "out" / "report.html");
+    CHECK(contains(page, "frame 5 at "));
+    CHECK_FALSE(contains(page, "src=\"http"));
+    for (const char* picture : {"worst.test", "worst.reference", "worst.signed", "flicker", "dance"})
+        CHECK(fs::exists(box.here() / "out" / ("irradiance." + std::string(picture) + ".png")));
+}
+
+TEST_CASE("program: what two sequences cannot be compared for is one line", "[apps][sequence]")
+{
+    const Sandbox box;
+    const auto steady = [](int) { return 1.0; };
+    writeFrames(box, "long", 5, steady);
+    writeFrames(box, "short", 2, steady);
+    writeFrames(box, "gap", 5, steady);
+    fs::remove_all(box.here() / "gap" / "0002");
+    writeFrames(box, "early", 5, steady);
+    writeFrames(box, "late", 5, steady);
+    std::ofstream(box.here() / "early" / "0001" / "moment.json") << R"({"time": 0.25})";
+    std::ofstream(box.here() / "late" / "0001" / "moment.json") << R"({"time": 0.5})";
+    fs::create_directory(box.here() / "empty");
+    for (const auto& [arguments, message] : {std::pair{"no-such long", "no-such: is no folder of frames"},
+                                             {"empty long", "empty: has no frame, as 0000/image.exr"},
+                                             {"short long", "has 2 frames in common with long; three are needed"},
+                                             {"gap long", "gap: has no frame 2"},
+                                             {"early late", "frame 1 at 0.25 s, late at 0.5 s"},
+                                             {"long long --layer direct", "has no layer direct"},
+                                             {"long long --fail-above rmse=1", "must be metric=value of a sequence"},
+                                             {"long long --fail-below psnr=1", "--fail-below"}}) {
+        const Outcome outcome = box.run("compare --sequence " + std::string(arguments) + " -o out");
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK(isOneLine(outcome.err));
+        CHECK(contains(outcome.err, message));
+        CHECK_FALSE(fs::exists(box.here() / "out"));
+    }
+}
+
+TEST_CASE("program: a camera that moves past a still scene is followed from frame to frame", "[apps][sequence]")
+{
+    const Sandbox box;
+    std::ofstream(box.here() / "view.json") << R"({"scene": "cornell-box", "camera": {"target": [0, 1, 0], "keys": [{"time": 0, "eye": [0, 1, 3.4]},
+        {"time": 1, "eye": [0.4, 1.2, 3.4]}]}})";
+    REQUIRE(box.run("render view.json --frames 0:3 --fps 2 -o out" + kTinyFrames).code == 0);
+    const Json layer = Json::parse(box.run("compare --sequence out out --json").out)["layers"][0];
+    CHECK(layer["fe"] == 0.0);
+    CHECK(layer["v"].is_null());
+    CHECK(layer["followed_share"] > 0.8);
+    CHECK(layer["followed_share"] < 1.0);
 }
