@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-/// How two sequences of pictures move, and how far apart, in numbers. x: test, r: truth, e = x - r, luminances of a pixel; D2 x = x(t-1) - 2 x(t) + x(t+1), which is 0
-/// where light fades at a steady rate. Means run over pixels that count in all frames concerned, and over time; `mean r` is over all of them.
+/// How two sequences of pictures move, and how far apart, in numbers. x: test, r: truth, e = x - r, luminances of a pixel; D2 x = x(t-1) - 2 x(t) + x(t+1),
+/// which is 0 where light fades at a steady rate. Means run over pixels that count in all frames concerned, and over time; `mean r` is over all of them.
 ///
 /// F   = mean |D2 x| / mean r          how much the picture flickers, the truth's own beside it: light that really changes its pace is in both
 /// F_e = mean |D2 e| / mean r          what of it is error: the headline. A second seed of the truth in place of x is its floor
@@ -26,8 +26,8 @@ inline constexpr float kSamePlaceShare = 0.02f;
 struct MomentPair {
     Image<double> test, reference;  ///< luminance
     PixelMask valid;                ///< which pixels count; all of one size
-    /// Where the camera moves, pixels follow their place: to the pixel it falls into in the other frame, if that shows the same object (where it is known) at the
-    /// same place, within kSamePlaceShare of the depth, and one the same depth. Empty and none: pixels stand still.
+    /// Where the camera moves, pixels follow their place: to the pixel it falls into in the other frame, if that shows the same object (where it is known) at
+    /// the same place, within kSamePlaceShare of the depth, and one the same depth. Empty and none: pixels stand still.
     std::optional<Camera> camera = {};
     Image<Vec3> position = {};  ///< world
     Image<float> depth = {};    ///< along the viewing axis
@@ -39,7 +39,7 @@ Image<double> luminances(const Image<Vec3>& picture);
 
 /// Numbers of one moment; of what needs a moment before or after that is not there: NaN.
 struct MomentMetrics {
-    double meanTest = 0.0, meanReference = 0.0, rmse = 0.0;             ///< as measure()'s, of luminances; rmse over `mean r` of the sequence
+    double meanTest = 0.0, meanReference = 0.0, rmse = 0.0;              ///< as measure()'s, of luminances; rmse over `mean r` of the sequence
     double flicker = 0.0, flickerReference = 0.0, flickerOfError = 0.0;  ///< F, the truth's, F_e at this moment
     double jump = 0.0;                                                   ///< of J, from the moment before to this
 };
@@ -52,7 +52,7 @@ struct SequenceMetrics {
     double stillShare = 0.0;                                             ///< of the pixels: what V is over
     double followedShare = 1.0;                                          ///< of pixels and pairs of moments: what was found again
     std::vector<MomentMetrics> moments;
-    std::size_t worstFlicker = 0, worstJump = 0;                  ///< indices into `moments`: largest F_e, first; largest jump, first
+    std::size_t worstFlicker = 0, worstJump = 0;              ///< indices into `moments`: largest F_e, first; largest jump, first
     Image<double> flickerMap, flickerReferenceMap, danceMap;  ///< a pixel's mean |D2 e| and |D2 r| over mean r, and sqrt Var_t x / mean r (0 where r moves)
 };
 

@@ -2,6 +2,7 @@
 
 #include "apps/common/describe.h"
 #include "apps/common/interrupts.h"
+#include "apps/common/progress.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
@@ -10,6 +11,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -28,10 +30,30 @@ std::string hashOfFile(const fs::path& path)
     return Sha256().add(readFile(path.string())).hex();
 }
 
+struct Boxes {
+    Aabb bounds, reach;
+};
+
+/// Of all moments, not of the range at hand alone: so that any split of it gives the same.
+Boxes boxesOfAll(const SceneSource& source, const CommonOptions& options, const FrameRange& range)
+{
+    const double last = std::ceil(endOfMotion(source) * range.fps);
+    if (last > kMostFrames) throw InputError("--sequence-bounds union", "the view moves for more than " + std::to_string(kMostFrames) + " frames");
+    Progress progress(options.quiet);
+    Boxes all;
+    for (int i = 0; i <= int(last); ++i) {
+        progress.show("bounds of all moments", double(i) / (last + 1.0));
+        const Scene scene = poseChosenScene(source, options, range.time(i));
+        all.bounds.include(scene.bounds);
+        all.reach.include(extentOf(scene));
+    }
+    return all;
+}
+
 /// What all frames share, and the scene that they are of: as it is at 0 s, and the view's text.
 Json commonOf(const SequenceJob& job, const SceneSource& source, const CommonOptions& options)
 {
-    Json common = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"fps", job.range.fps}};
+    Json common = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"fps", job.range.fps}, {"sequence_bounds", job.range.unionBounds ? "union" : "frame"}};
     common.update(job.common);
     const Scene first = poseChosenScene(source, options, 0.0f);
     common["scene"] = {{"name", first.name}, {"sha256_at_0", hashScene(first)}};
@@ -127,6 +149,44 @@ bool makeFrame(const SequenceJob& job, const SequenceFrame& frame, Json entry, c
     return true;
 }
 
+struct Tally {
+    int made = 0, kept = 0, replaced = 0;
+    bool interrupted = false;
+};
+
+Tally makeAll(const SequenceJob& job, const CommonOptions& options, const SceneSource& source, const std::optional<Boxes>& boxes, const std::string& sequence)
+{
+    const CatchInterrupts catching;
+    Tally tally;
+    for (int i = job.range.begin; i < job.range.end && !tally.interrupted; ++i) {
+        Scene scene = poseChosenScene(source, options, job.range.time(i));
+        if (boxes) scene.bounds = boxes->bounds, scene.reach = boxes->reach;
+        const SequenceFrame frame{.index = i,
+                                  .time = job.range.time(i),
+                                  .scene = scene,
+                                  .camera = chosenCamera(scene, options),
+                                  .sceneHash = hashScene(scene),
+                                  .stop = catching.asked()};
+        const fs::path path = fs::path(job.folder) / frameName(i);
+        const Json entry = entryOf(frame, sequence), found = readEntry(path, job.mainFile);
+        if (isKept(found, entry, path, job.mainFile)) {
+            ++tally.kept;
+            continue;
+        }
+        tally.replaced += found.empty() ? 0 : 1;
+        const auto start = std::chrono::steady_clock::now();
+        if (!makeFrame(job, frame, entry, path)) {
+            tally.interrupted = true;
+            break;
+        }
+        ++tally.made;
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        if (!job.quiet && !job.json) std::cout << "  " << frameName(i) << "  at " << frame.time << " s, took " << seconds.count() << " s" << std::endl;
+        tally.interrupted = catching.asked() && i + 1 < job.range.end;
+    }
+    return tally;
+}
+
 void sayHint(const SequenceJob& job)
 {
     std::error_code ignored;
@@ -143,6 +203,12 @@ void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments)
 {
     CLI::Option* frames = parser.add_option(
         "--frames", arguments.frames, "A:B: frames A .. B-1, each in a folder of its own, DIR/0000 ..., and DIR/sequence.json; what is there already is kept");
+    parser
+        .add_option("--sequence-bounds", arguments.bounds,
+                    "what voxel grid and light maps are fitted to: each frame, or the union of all moments of the view at these fps, so that they stand still")
+        ->needs(frames)
+        ->check(CLI::IsMember({"frame", "union"}))
+        ->capture_default_str();
     parser.add_option("--fps", arguments.fps, "frames a second: frame i is at i / fps seconds")->needs(frames)->capture_default_str();
     frames->excludes("--time");
 }
@@ -150,7 +216,7 @@ void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments)
 std::optional<FrameRange> chosenFrames(const SequenceArguments& arguments)
 {
     if (arguments.frames.empty()) return {};
-    FrameRange range{.begin = 0, .end = 0, .fps = arguments.fps};
+    FrameRange range{.begin = 0, .end = 0, .fps = arguments.fps, .unionBounds = arguments.bounds == "union"};
     const char *begin = arguments.frames.data(), *end = begin + arguments.frames.size();
     const auto first = std::from_chars(begin, end, range.begin);
     const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
@@ -174,49 +240,24 @@ int runSequence(const SequenceJob& job, const CommonOptions& options)
     }  // fails now rather than after the first frame
     const SceneSource source = openChosenScene(options);
     for (int i = job.range.begin; i < job.range.end; ++i) checkMoment(source, job.range.time(i));
-    const Json common = commonOf(job, source, options);
+    Json common = commonOf(job, source, options);
+    const std::optional<Boxes> boxes = job.range.unionBounds ? std::optional(boxesOfAll(source, options, job.range)) : std::nullopt;
+    if (boxes) common["bounds"] = boxJson(boxes->bounds), common["reach"] = boxJson(boxes->reach);
     const std::string sequence = Sha256().add(common.dump(-1, ' ', false, Json::error_handler_t::replace)).hex();
 
-    const CatchInterrupts catching;
-    int made = 0, kept = 0, replaced = 0;
-    bool interrupted = false;
-    for (int i = job.range.begin; i < job.range.end && !interrupted; ++i) {
-        const Scene scene = poseChosenScene(source, options, job.range.time(i));
-        const SequenceFrame frame{.index = i,
-                                  .time = job.range.time(i),
-                                  .scene = scene,
-                                  .camera = chosenCamera(scene, options),
-                                  .sceneHash = hashScene(scene),
-                                  .stop = catching.asked()};
-        const fs::path path = fs::path(job.folder) / frameName(i);
-        const Json entry = entryOf(frame, sequence), found = readEntry(path, job.mainFile);
-        if (isKept(found, entry, path, job.mainFile)) {
-            ++kept;
-            continue;
-        }
-        replaced += found.empty() ? 0 : 1;
-        const auto start = std::chrono::steady_clock::now();
-        if (makeFrame(job, frame, entry, path)) {
-            ++made;
-            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-            if (!job.quiet && !job.json) std::cout << "  " << frameName(i) << "  at " << frame.time << " s, took " << seconds.count() << " s" << std::endl;
-        } else {
-            interrupted = true;
-        }
-        interrupted |= catching.asked() && i + 1 < job.range.end;
-    }
+    const Tally tally = makeAll(job, options, source, boxes, sequence);
     if (fs::is_directory(job.folder)) {
         const Json json = sequenceJson(common, job, sequence);
         writeText(fs::path(job.folder) / kSequenceFile, jsonText(json));
         if (job.json) std::cout << jsonText(json);
     }
-    if (replaced > 0) say({std::to_string(replaced) + " frames of other input or settings, or damaged, were replaced"});
-    if (interrupted) {
+    if (tally.replaced > 0) say({"frames of other input or settings, or damaged, that were replaced: " + std::to_string(tally.replaced)});
+    if (tally.interrupted) {
         std::cerr << "lrsm: interrupted; frames that are done are in " << job.folder << " (the same command continues)" << std::endl;
         return kInterruptedCode;
     }
     if (!job.quiet && !job.json) {
-        std::cout << job.folder << ": " << made << " frames made, " << kept << " kept, " << kSequenceFile << "\n";
+        std::cout << job.folder << ": " << tally.made << " frames made, " << tally.kept << " kept, " << kSequenceFile << "\n";
         sayHint(job);
     }
     return 0;

@@ -24,6 +24,7 @@ inline constexpr const char* kFrameFile = "moment.json";
 struct SequenceArguments {
     std::string frames;
     double fps = 24.0;
+    std::string bounds = "frame";
 };
 void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments);
 
@@ -31,6 +32,7 @@ void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments);
 struct FrameRange {
     int begin = 0, end = 0;
     double fps = 24.0;
+    bool unionBounds = false;  ///< all frames share Scene::bounds and Scene::reach: those of all moments from 0 s to the end of motion
     float time(int frame) const { return float(double(frame) / fps); }  ///< seconds, as --time takes them
 };
 /// Of --frames and --fps; nothing: a still picture. Throws InputError.

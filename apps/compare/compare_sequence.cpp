@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kShownWidth = 320;              // pixels of a frame in the page
+constexpr int kShownWidth = 320;               // pixels of a frame in the page
 constexpr std::size_t kMostShownFrames = 240;  // of a longer sequence every so-manieth is shown
 constexpr float kErrorLimit = 1.0f;            // signed errors end at one mean of the reference
 constexpr float kFlickerLimit = 0.1f;          // maps over time at a tenth
@@ -102,10 +102,14 @@ Image<Rgb8> errorPicture(const Image<Vec3>& test, const Image<Vec3>& reference, 
 Json momentJson(int frame, double time, const MomentMetrics& m)
 {
     const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
-    return {{"frame", frame},         {"time", time},
-            {"mean_test", finite(m.meanTest)}, {"mean_reference", finite(m.meanReference)},
-            {"rmse_over_mean", finite(m.rmse)}, {"f", finite(m.flicker)},
-            {"f_reference", finite(m.flickerReference)}, {"fe", finite(m.flickerOfError)},
+    return {{"frame", frame},
+            {"time", time},
+            {"mean_test", finite(m.meanTest)},
+            {"mean_reference", finite(m.meanReference)},
+            {"rmse_over_mean", finite(m.rmse)},
+            {"f", finite(m.flicker)},
+            {"f_reference", finite(m.flickerReference)},
+            {"fe", finite(m.flickerOfError)},
             {"jump", finite(m.jump)}};
 }
 
@@ -168,7 +172,8 @@ void addPictures(const SequenceComparison& options, const SequenceFiles& test, c
     std::vector<float> stops(sections.size(), 0.0f);
     for (std::size_t t = 0; t < frames.size(); ++t) {
         progress.show("drawing", double(t) / double(frames.size()));
-        const bool worst = std::any_of(sections.begin(), sections.end(), [&](const SequenceSection& s) { return s.metrics.worstFlicker == t || s.metrics.worstJump == t; });
+        const bool worst =
+            std::any_of(sections.begin(), sections.end(), [&](const SequenceSection& s) { return s.metrics.worstFlicker == t || s.metrics.worstJump == t; });
         if (t % every != 0 && !worst) continue;
         const FramePair pair = readFrame(test, reference, frames[t]);
         for (std::size_t k = 0; k < sections.size(); ++k) {
@@ -205,7 +210,8 @@ Json notesOf(const SequenceFiles& test, const SequenceFiles& reference, std::siz
 {
     Json notes = Json::array();
     for (const SequenceFiles* side : {&test, &reference})
-        if (side->pictures.size() > common) notes.push_back(std::to_string(side->pictures.size() - common) + " frames of " + side->folder + " have no counterpart and are left out");
+        if (side->pictures.size() > common)
+            notes.push_back(std::to_string(side->pictures.size() - common) + " frames of " + side->folder + " have no counterpart and are left out");
     return notes;
 }
 
@@ -222,8 +228,15 @@ int compareSequences(const SequenceComparison& options)
     std::vector<std::uint64_t> notFinitePixels;
     std::vector<SequenceSection> sections = measureAll(options, test, reference, frames, notFinitePixels, progress);
 
-    Json json = {{"program", "lrsm"},           {"version", LRSM_VERSION}, {"command", "compare"}, {"sequence", true}, {"test", options.test},
-                 {"reference", options.reference}, {"notes", notesOf(test, reference, frames.size())}, {"layers", Json::array()}, {"failures", Json::array()}};
+    Json json = {{"program", "lrsm"},
+                 {"version", LRSM_VERSION},
+                 {"command", "compare"},
+                 {"sequence", true},
+                 {"test", options.test},
+                 {"reference", options.reference},
+                 {"notes", notesOf(test, reference, frames.size())},
+                 {"layers", Json::array()},
+                 {"failures", Json::array()}};
     for (std::size_t k = 0; k < sections.size(); ++k) {
         const SequenceSection& section = sections[k];
         json["layers"].push_back(layerJson(section, test));

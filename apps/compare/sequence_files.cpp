@@ -69,11 +69,13 @@ std::vector<int> commonFrames(const SequenceFiles& test, const SequenceFiles& re
     std::vector<int> frames;
     for (const auto& [frame, path] : test.pictures)
         if (reference.pictures.contains(frame)) frames.push_back(frame);
-    if (frames.size() < 3) throw InputError(test.folder, "has " + std::to_string(frames.size()) + " frames in common with " + reference.folder + "; three are needed");
+    if (frames.size() < 3)
+        throw InputError(test.folder, "has " + std::to_string(frames.size()) + " frames in common with " + reference.folder + "; three are needed");
     for (std::size_t i = 1; i < frames.size(); ++i)
         if (frames[i] != frames[i - 1] + 1) {
             const bool here = test.pictures.contains(frames[i - 1] + 1);
-            throw InputError(here ? reference.folder : test.folder, "has no frame " + std::to_string(frames[i - 1] + 1) + "; the frames of both must be consecutive");
+            throw InputError(here ? reference.folder : test.folder,
+                             "has no frame " + std::to_string(frames[i - 1] + 1) + "; the frames of both must be consecutive");
         }
     for (const int frame : frames) {
         const auto a = test.times.find(frame), b = reference.times.find(frame);

@@ -32,8 +32,8 @@ FramePair readFrame(const SequenceFiles& test, const SequenceFiles& reference, i
 /// The camera that a picture's metadata tell, in the file's world; nothing where they do not.
 std::optional<Camera> cameraOf(const LayeredImage& image);
 
-/// What the meter needs of one layer. Pixels count where the eye sees a surface in either picture, as far as they tell, and both are finite. Where camera, position
-/// and depth are all told, pixels can follow.
+/// What the meter needs of one layer. Pixels count where the eye sees a surface in either picture, as far as they tell, and both are finite. Where camera,
+/// position and depth are all told, pixels can follow.
 MomentPair momentOf(const FramePair& pair, const std::string& layer, bool allPixels);
 /// Pixels of a layer that are not finite in either picture.
 std::uint64_t notFinite(const FramePair& pair, const std::string& layer);

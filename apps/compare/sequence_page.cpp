@@ -59,12 +59,14 @@ std::string scrubberHtml(const SequenceSection& section)
     const double seconds = section.shown.size() > 1 ? section.shown[1].time - section.shown[0].time : 0.0;
     const auto figure = [](const std::string& title) { return "<figure><img alt=\"" + title + "\"><figcaption>" + title + "</figcaption></figure>"; };
     return "<div class=\"scrub\" data-milliseconds=\"" + std::to_string(int(seconds > 0.0 ? 1000.0 * seconds + 0.5 : 100.0)) + "\">" + figure("reference") +
-           figure("test") + figure("signed error: red too bright, blue too dark, full at one mean of the reference") + "<div><input type=\"range\" min=\"0\" max=\"" +
-           std::to_string(section.shown.size() - 1) + "\" value=\"0\" aria-label=\"frame\"> <label><input type=\"checkbox\"> play</label><output></output></div>" +
-           "<script type=\"application/json\">" + shown.dump() + "</script></div>\n";
+           figure("test") + figure("signed error: red too bright, blue too dark, full at one mean of the reference") +
+           "<div><input type=\"range\" min=\"0\" max=\"" + std::to_string(section.shown.size() - 1) +
+           "\" value=\"0\" aria-label=\"frame\"> <label><input type=\"checkbox\"> play</label><output></output></div>" + "<script type=\"application/json\">" +
+           shown.dump() + "</script></div>\n";
 }
 
-Chart curve(const SequenceSection& section, const std::string& title, const std::string& label, const std::vector<std::pair<std::string, double MomentMetrics::*>>& values)
+Chart curve(const SequenceSection& section, const std::string& title, const std::string& label,
+            const std::vector<std::pair<std::string, double MomentMetrics::*>>& values)
 {
     Chart chart{title, "frame", label};
     for (const auto& [name, value] : values) {
@@ -82,7 +84,9 @@ std::string sectionHtml(const SequenceSection& section)
 {
     std::string html = headingHtml("Layer " + section.layer) + tableHtml(sequenceTable(section)) + scrubberHtml(section);
     html += chartHtml(curve(section, "What flickers: mean |D2| over the mean of the reference", "",
-                            {{"F_e, the error's", &MomentMetrics::flickerOfError}, {"F of the test", &MomentMetrics::flicker}, {"F of the reference", &MomentMetrics::flickerReference}}));
+                            {{"F_e, the error's", &MomentMetrics::flickerOfError},
+                             {"F of the test", &MomentMetrics::flicker},
+                             {"F of the reference", &MomentMetrics::flickerReference}}));
     html += chartHtml(curve(section, "Jumps of the error from the frame before: 99.9th percentile over the mean", "", {{"jump", &MomentMetrics::jump}}));
     html += chartHtml(curve(section, "Error of each frame", "RMSE / mean", {{"RMSE", &MomentMetrics::rmse}}));
     html += chartHtml(curve(section, "Mean luminance", "", {{"test", &MomentMetrics::meanTest}, {"reference", &MomentMetrics::meanReference}}));
@@ -101,8 +105,9 @@ ReportTable sequenceTable(const SequenceSection& section)
     table.rows = {{"F", figureOf(m.flicker), "flicker of the test: mean |D2 x| over the mean"},
                   {"F of the reference", figureOf(m.flickerReference), "light that really changes its pace, and the reference's noise"},
                   {"F_e", figureOf(m.flickerOfError), "flicker that is error; worst: " + frame(m.worstFlicker)},
-                  {"V", m.dance ? figureOf(*m.dance) : "-", m.dance ? "variance in time where the reference stands still: " + shareText(m.stillShare) + " of the pixels"
-                                                                  : "the camera moves, or no pixel of the reference stands still"},
+                  {"V", m.dance ? figureOf(*m.dance) : "-",
+                   m.dance ? "variance in time where the reference stands still: " + shareText(m.stillShare) + " of the pixels"
+                           : "the camera moves, or no pixel of the reference stands still"},
                   {"J", figureOf(m.jump), "largest jump of the error, 99.9th percentile; into " + frame(m.worstJump)}};
     if (m.followedShare < 1.0) table.rows.push_back({"followed", shareText(m.followedShare), "of the pixels were found again in the frame before"});
     return table;

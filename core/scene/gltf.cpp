@@ -258,6 +258,14 @@ Scene poseGltf(const gltf::Asset& asset, const LoadOptions& options)
     return scene;
 }
 
+double lengthOfAnimation(const gltf::Asset& asset, int animation)
+{
+    double end = 0.0;
+    if (animation >= 0 && std::size_t(animation) < asset.animations.size())
+        for (const gltf::Channel& channel : asset.animations[std::size_t(animation)].channels) end = std::max(end, double(channel.times.back()));
+    return end;
+}
+
 Scene loadGltf(const std::string& path, const LoadOptions& options)
 {
     return poseGltf(*openGltf(path), options);

@@ -35,6 +35,9 @@ GltfFile openGltf(const std::string& path);
 /// result does not depend on the number of threads.
 Scene poseGltf(const gltf::Asset& file, const LoadOptions& options);
 
+/// The last keyframe of an animation, seconds; 0 where there is no such one.
+double lengthOfAnimation(const gltf::Asset& file, int animation);
+
 /// Both.
 Scene loadGltf(const std::string& path, const LoadOptions& options);
 

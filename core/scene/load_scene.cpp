@@ -141,6 +141,16 @@ Scene poseScene(const SceneSource& source, float time)
     return posed;
 }
 
+double endOfMotion(const SceneSource& source)
+{
+    double end = source.view && !source.view->keyTimes.empty() ? std::max(source.view->keyTimes.back(), 0.0) : 0.0;
+    if (source.file) end = std::max(end, lengthOfAnimation(*source.file, source.options.animation));
+    if (source.objects.empty()) return end;
+    const std::vector<ViewObject> objects = viewAt(*source.view, 0.0).objects;
+    for (std::size_t i = 0; i < objects.size(); ++i) end = std::max(end, lengthOfAnimation(*source.objects[i], objects[i].placement.animation));
+    return end;
+}
+
 void checkMoment(const SceneSource& source, float time)
 {
     if (source.view) viewAt(*source.view, double(time));

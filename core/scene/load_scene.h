@@ -31,6 +31,9 @@ SceneSource openScene(const std::string& scene, const SceneOptions& options);
 /// The scene at `time`, seconds: a function of its arguments alone, equal to the bit to that of a source opened anew.
 Scene poseScene(const SceneSource& source, float time);
 
+/// The last second at which anything moves, of keys and animations; 0 where nothing does.
+double endOfMotion(const SceneSource& source);
+
 /// Throws InputError where the view has none at `time`, without posing anything: all frames are asked before the first is rendered.
 void checkMoment(const SceneSource& source, float time);
 

@@ -74,7 +74,7 @@ TEST_CASE("program: frames that are complete and of the same input are kept, oth
     std::ofstream(box.here() / "out" / "0001" / "image.exr", std::ios::app) << "x";
     const Outcome again = box.run(command);
     REQUIRE(again.code == 0);
-    CHECK(contains(again.err, "1 frames of other input or settings, or damaged, were replaced"));
+    CHECK(contains(again.err, "frames of other input or settings, or damaged, that were replaced: 1"));
     CHECK(frameBytes(box, "out/0000") == before[0]);
     CHECK(frameBytes(box, "out/0001") == before[1]);
     CHECK(readText(box.here() / "out" / "0002" / "frame.json") == stamps[2]);  // its times are the first run's
@@ -106,6 +106,24 @@ TEST_CASE("program: a sequence that was killed goes on to the same bytes, with n
             CHECK(readText(box.here() / out / name) == readText(box.here() / "whole" / name));
         for (const auto& entry : fs::directory_iterator(box.here() / out)) CHECK_FALSE(entry.path().filename().string().starts_with("."));
     }
+}
+
+TEST_CASE("program: --sequence-bounds union fits all frames to all moments, whatever the range", "[apps][sequence]")
+{
+    const Sandbox box;
+    std::ofstream(box.here() / "triangle.gltf")
+        << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    std::ofstream(box.here() / "view.json") << R"({"scene": "cornell-box", "objects": [{"scene": "triangle.gltf", "keys": [{"time": 0, "position": [0, 0, 0]},
+        {"time": 1, "position": [0, 2, 0]}]}]})";
+    const auto boundsOf = [&](const std::string& frame) { return Json::parse(readText(box.here() / frame / "frame.json"))["scene"]["bounds"]; };
+    REQUIRE(box.run("render view.json --frames 1:3 --fps 4 -o each" + kTinyFrames).code == 0);
+    REQUIRE(box.run("render view.json --frames 1:3 --fps 4 --sequence-bounds union -o all" + kTinyFrames).code == 0);
+    REQUIRE(box.run("render view.json --frames 2:3 --fps 4 --sequence-bounds union -o part" + kTinyFrames).code == 0);
+    CHECK(boundsOf("each/0001") != boundsOf("each/0002"));
+    CHECK(boundsOf("all/0001") == boundsOf("all/0002"));
+    CHECK(boundsOf("all/0002")["max"][1] == 3.0);
+    CHECK(frameBytes(box, "all/0002") == frameBytes(box, "part/0002"));
+    CHECK(frameBytes(box, "all/0002") != frameBytes(box, "each/0002"));
 }
 
 TEST_CASE("program: a capture of many moments is a capture a folder", "[apps][sequence]")

@@ -47,7 +47,8 @@ float stillPicture(int, int i)
 
 TEST_CASE("a still sequence has F = F_e = V = J = 0 to the bit, however wrong it is", "[reference][sequence]")
 {
-    const SequenceMetrics m = metricsOf(12, [](int, int i) { return noise(std::uint32_t(i), 3); }, stillPicture);
+    const SequenceMetrics m = metricsOf(
+        12, [](int, int i) { return noise(std::uint32_t(i), 3); }, stillPicture);
     CHECK(m.flicker == 0.0);
     CHECK(m.flickerReference == 0.0);
     CHECK(m.flickerOfError == 0.0);
@@ -75,8 +76,8 @@ TEST_CASE("planted: a pop of 2 % in one frame is found with its frame, of all pi
 {
     for (const int share : {1, 100})
         for (const int frame : {1, 4, 8}) {
-            const SequenceMetrics m =
-                metricsOf(10, [&](int t, int i) { return stillPicture(t, i) * (t == frame && i % share == 0 ? 1.02f : 1.0f); }, stillPicture);
+            const SequenceMetrics m = metricsOf(
+                10, [&](int t, int i) { return stillPicture(t, i) * (t == frame && i % share == 0 ? 1.02f : 1.0f); }, stillPicture);
             CAPTURE(share, frame);
             CHECK(m.worstFlicker == std::size_t(frame));
             CHECK(m.worstJump == std::size_t(frame));
