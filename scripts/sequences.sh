@@ -31,7 +31,7 @@ for case in $cases; do
     # The truth, and a second one: the floor of what can be told.
     for seed in 0 1; do
         folder=$out/$case/truth; [ $seed = 0 ] || folder=$out/$case/truth-of-seed-$seed
-        "$lrsm" reference $view $frames --spp "${SPP:-128}" --seed $seed -o "$folder"
+        "$lrsm" reference $view $frames --spp "${SPP:-256}" --eye-side-only --seed $seed -o "$folder"
     done
     { echo "| $case | F_e | F | F of the truth | V | J | RMSE / mean |"; echo "|---|---|---|---|---|---|---|"; } >"$out/$case.md"
     compare "$case" truth-of-seed-1 "the truth's noise"

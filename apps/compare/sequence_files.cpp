@@ -1,5 +1,6 @@
 #include "apps/compare/sequence_files.h"
 
+#include "apps/common/sequence.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
 
@@ -24,7 +25,7 @@ std::optional<int> frameNumber(const std::string& name)
 std::optional<double> timeOf(const fs::path& folder)
 {
     std::error_code ignored;
-    const std::string file = (folder / "moment.json").string();
+    const std::string file = (folder / kFrameFile).string();
     if (!fs::exists(file, ignored)) return {};
     const Json json = parseJson(readFile(file), file);
     return JsonReader(json, file)["time"].number();

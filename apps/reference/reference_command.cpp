@@ -95,9 +95,12 @@ std::optional<Checkpoint> earlierSamples(const std::string& folder, bool resume,
     return found;
 }
 
-void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, std::uint64_t invalidSamples, SayOnce& sayOnce)
+void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, const SampleFaults& faults, SayOnce& sayOnce)
 {
-    if (invalidSamples > 0) sayOnce({std::to_string(invalidSamples) + " values were not finite and count as 0"});
+    if (faults.notFinite > 0) sayOnce({std::to_string(faults.notFinite) + " values were not finite and count as 0"});
+    if (faults.clamped > 0)
+        sayOnce({std::to_string(faults.clamped) + " values of paths were above 2^24 times the scene's unit of radiance and count as that: the picture is too "
+                                                  "dark where a path finds something that bright"});
     Image<Vec3> position(seen.depth.width, seen.depth.height), normal = position;
     for (std::size_t i = 0; i < position.texels.size(); ++i) {
         position.texels[i] = seen.surface.texels[i].position;
@@ -164,7 +167,7 @@ std::optional<Traced> traceTo(OutputFolder& folder, const ReferencePlan& plan, c
     Traced traced{referenceJson(scene, sceneHash, camera, tracer, checkpoint.state), noiseOf(tracer, checkpoint.state.sums)};
     if (arguments.bareLoop) traced.json["bare_loop"] = bareLoopJson(tracer, seconds > 0.0 ? double(checkpoint.state.rays.total()) / seconds : 0.0);
     const ReferenceFrame picture = writeReference(folder, checkpoint, seenLayers(scene, tracer.primary()), traced.json, plan.exposure);
-    saySeen(scene, tracer.primary(), picture, checkpoint.state.invalidSamples, sayOnce);
+    saySeen(scene, tracer.primary(), picture, checkpoint.state.faults, sayOnce);
     return traced;
 }
 

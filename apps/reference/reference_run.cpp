@@ -165,7 +165,8 @@ Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camer
     json["camera"] = cameraJson(camera);
     json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
     json["rays"] = speedJson(state.rays, state.seconds);
-    json["not_finite_samples"] = state.invalidSamples;
+    json["not_finite_samples"] = state.faults.notFinite;
+    json["clamped_samples"] = state.faults.clamped;
     return json;
 }
 
