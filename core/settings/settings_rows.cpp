@@ -164,6 +164,11 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(
         choice<&R::halfRounding>({"rsm_half_rounding", "", "float to half: toward zero (D3D11) or to nearest even", "D3D11.3 spec 3.2.2: d3d"}, rounding));
     rows.push_back(choice<&R::extent>({"rsm_extent", "", "a light's map over the same reach, or over the whole scene", "ours; paper: scene"}, extent));
+    rows.push_back(choice<&R::snap>(
+        {"rsm_snap", "",
+         "a sun's map stands on whole texels of the world; that, with texels of one size from all directions; or is fitted closely (docs/sequences.md)",
+         "ours"},
+        {"texel", "sphere", "none"}));
 
     rows.push_back(whole<&L::depthLayers>({"depth_layers", "", "depth slices, a + 1", "paper Table 2: 2, 3"}, {1, 16}));
     rows.push_back(whole<&L::normalLayers>({"normal_layers", "", "slices of <n.l>, b + 1", "paper Table 2: 2"}, {1, 8}));
