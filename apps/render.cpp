@@ -76,6 +76,11 @@ int runRender(const RenderArguments& options)
 
     Progress progress(options.quiet);
     renderOptions.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+    std::optional<Caches> caches;
+    if (settings.method == Method::caches)
+        renderOptions.watch.observe = [&](const std::string&, const PassOutput& output) {
+            if (const auto* made = output.as<Caches>()) caches = *made;
+        };
     const Frame frame = renderFrame(scene, camera, settings, renderOptions);
     progress.show("writing", 0.0);
 
@@ -87,7 +92,8 @@ int runRender(const RenderArguments& options)
                        .sceneHash = hashScene(scene),
                        .memory = predictMemory(memory),
                        .exposureStops = exposure,
-                       .radiance = options.radiance};
+                       .radiance = options.radiance,
+                       .caches = caches ? &*caches : nullptr};
     addMeasured(record.memory, frame.passes);
     const nlohmann::ordered_json json = frameJson(frame, record);
     writeFrame(*folder, frame, record, json);
