@@ -35,7 +35,7 @@ unseen="furnace cornell-glossy $(existing cornell sponza-curtains)
     $(view dragon dragon_lowres.glb "0.9, 0.8, 1.6" "0, 0.45, 0" 40 "$(spot "0.8, 2.2, 1.2" "0, 0.4, 0" 20 20 28)")
     $(view house samples/PlayCanvas_house_mask.glb "0.35, 0.28, 0.45" "0, 0.06, 0" 40 "$(sun "-0.4, -1, -0.3" 6)")"
 effects="cornell-glossy atrium $(existing sponza sibenik-nave)"
-sweep() { "$lrsm" sweep "$@" --spp 2048 --references "$references"; }
+sweep() { "$lrsm" sweep "$@" --spp 512 --references "$references"; }
 
 # The points that tune offers, presets among them, and the path tracer.
 sweep $chosen -o "$out/points" --axes points --size 640x360 --repeat 1

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 out=${1:-out/paper}
 lrsm=${LRSM:-build/release/apps/lrsm}
 scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}")
-presets=${PRESETS:-literal balanced vct-paper vct}
+presets=${PRESETS:-literal paper balanced vct-paper vct}
 page=${PAGE:-docs/paper.md}
 images=${IMAGES:-docs/images}
 size=256x144
@@ -88,7 +88,7 @@ info sponza-vct sponza "--preset vct-paper --set rsm_resolution=1024 --set voxel
 
 # Table 3: 1280x720 in Sponza, without specular cones, with one a pixel, and with shadow cones.
 repeats=${REPEATS:-2}
-for preset in literal balanced vct-paper vct; do
+for preset in literal paper balanced vct-paper vct; do
     for run in $(seq "$repeats"); do
         for view in sponza-diffuse sponza-all-gloss; do
             once "$out/table3/$preset/$view/$run" "$lrsm" render "$out/views/$view.json" --preset "$preset" --set voxel_resolution=512 --set shadows=cone --threads "${THREADS:-0}"

@@ -133,7 +133,7 @@ def stage_times(out, preset):
 
 
 def table3(out):
-    presets = ["vct-paper", "vct", "literal", "balanced"]
+    presets = ["vct-paper", "vct", "literal", "paper", "balanced"]
     times = {p: stage_times(out, p) for p in presets}
     lines = ["| stage | paper: VCT | paper: LRSM | " + " | ".join(f"`{p}`" for p in presets) + " |", "| --- " * (len(presets) + 3) + "|"]
     printed = {"voxelization, mips": ("", "9.8 %"), "RSM, LRSM": ("", "5.7 %"), "injection, six mips": ("precomputed", ""), "shadow cones": ("", "12.9 %"), "diffuse cones": ("", "40.8 %"), "specular cones": ("", "30.7 %")}

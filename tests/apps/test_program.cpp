@@ -50,7 +50,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box -o out --size 100", "--size 100"},
         {"render cornell-box -o out --size -5x5", "--size -5x5"},
         {"render cornell-box -o out --size 99999x10", "16384"},
-        {"render cornell-box -o out --preset best", "literal, fast, balanced, fine, accurate"},
+        {"render cornell-box -o out --preset best", "literal, paper, fast, balanced, fine, accurate"},
         {"render cornell-box -o out --set push=nan", "push=nan: must be [0, 16]"},
         {"render cornell-box -o out --set cone_cuont=7", "did you mean cone_count?"},
         {"render cornell-box -o out --set layer_overlap=0.1", "count light twice"},
@@ -72,7 +72,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box extra -o out", "extra"},
         {"render cornell-box --view v.json -o out", "v.json"},
         {"capture cornell-box -o out --preset rays", "take visibility=cones"},
-        {"settings --preset best", "literal, fast, balanced, fine, accurate"},
+        {"settings --preset best", "literal, paper, fast, balanced, fine, accurate"},
     }));
     CAPTURE(c.arguments);
     const Sandbox sandbox;

@@ -257,7 +257,29 @@ TEST_CASE("settings: every preset is valid, the literal one is the paper's readi
     CHECK(paper.cones.set.count == 6);
     CHECK(paper.layers.depthLayers * paper.layers.normalLayers == 4);
     CHECK(paper.layers.outermostDecay);
-    CHECK(contains(refusal([] { preset("best"); }), "literal, fast, balanced, fine, accurate"));
+
+    // The preset `paper` differs from it in what the paper leaves open alone.
+    const std::set<std::string> open{"voxel_resolution",
+                                     "fit_ranges",
+                                     "outermost_decay",
+                                     "layer_overlap",
+                                     "aperture_scale",
+                                     "rotation",
+                                     "irradiance_filter",
+                                     "min_diameter_voxels",
+                                     "push",
+                                     "opacity",
+                                     "density_k",
+                                     "voxel_level_bias",
+                                     "layer_selection",
+                                     "backface",
+                                     "v_radius_scale",
+                                     "shadow_cone_aperture_degrees"};
+    for (const SettingDifference& change : differences(paper, preset("paper"))) {
+        CAPTURE(change.key);
+        CHECK(open.count(change.key) == 1);
+    }
+    CHECK(contains(refusal([] { preset("best"); }), "literal, paper, fast, balanced, fine, accurate"));
 }
 
 TEST_CASE("settings: docs/settings.md is what `lrsm settings --markdown` prints", "[settings][docs]")
