@@ -1,10 +1,10 @@
 #include "conetrace/render.h"
 
+#include "conetrace/caches/gather.h"
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/frame/smooth_irradiance.h"
-#include "conetrace/caches/gather.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/vct/gather.h"
 #include "core/base/errors.h"
@@ -90,7 +90,7 @@ GatherMethod methodOf(const Settings& settings)
     switch (settings.method) {
     case Method::lrsm: return lrsmMethod(settings.cones.march.visibility);
     case Method::vct: return vctMethod();
-    case Method::caches: return cachesMethod(settings.caches.fill);
+    case Method::caches: return cachesMethod();
     }
     throw InputError("method", "is none of the known");
 }

@@ -99,8 +99,8 @@ void describeClusters(Catalogue& out, const DescribedFrame& frame, std::size_t)
     const auto list = [&](const std::string& name, std::size_t count, const std::string& axis, const std::string& meaning) {
         out.add(name, Dtype::u4, {count}, {axis}, {}, {meaning, kIndices, ""}, tolerances::kClusters);
     };
-    out.add("rc.axes", Dtype::f4, {down, across, 3}, {"tile_row", "tile_column", "axis"}, kXyz, {"the tile's three directions; 0 where it is empty", kWorldSpace, ""},
-            tolerances::kClusterAxes);
+    out.add("rc.axes", Dtype::f4, {down, across, 3}, {"tile_row", "tile_column", "axis"}, kXyz,
+            {"the tile's three directions; 0 where it is empty", kWorldSpace, ""}, tolerances::kClusterAxes);
     list("rc.tile_first", down * across + 1, "tile", "clusters of tile t are tile_first[t] .. tile_first[t + 1] - 1");
     list("rc.keys", mostCaches(frame), "cluster", "depth slice << 3 | axis << 1 | normals point against it");
     list("rc.first", mostCaches(frame) + 1, "cluster", "pixels of cluster c are pixels[first[c]] .. pixels[first[c + 1] - 1]");

@@ -276,8 +276,10 @@ std::size_t lightOfPass(const std::string& pass)
 HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
 {
     const std::string family = passFamily(pass);
-    return family == "rsm" ? settings.rsm.halfRounding : family.starts_with("vct") ? settings.vct.halfRounding
-           : family.starts_with("rc") ? settings.caches.halfRounding : settings.layers.halfRounding;
+    return family == "rsm"             ? settings.rsm.halfRounding
+           : family.starts_with("vct") ? settings.vct.halfRounding
+           : family.starts_with("rc")  ? settings.caches.halfRounding
+                                       : settings.layers.halfRounding;
 }
 
 std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights)

@@ -58,8 +58,9 @@ void rerunCachedLight(const Capture& inputs, std::size_t, Rerun& made)
         if (gbuffer.covered(pixel) && clusters.clusterOf.texels[pixel] == 0) throw InputError("rc.cluster", "is 0 where gbuffer.object_id is not");
     const CacheAtlas atlas = atlasFromCapture(inputs);
     cachedLightToBuffers(
-        evaluateCaches({.gbuffer = gbuffer, .camera = inputs.camera, .clusters = clusters, .places = places, .atlas = atlas, .settings = inputs.settings.caches},
-                       inputs.needs),
+        evaluateCaches(
+            {.gbuffer = gbuffer, .camera = inputs.camera, .clusters = clusters, .places = places, .atlas = atlas, .settings = inputs.settings.caches},
+            inputs.needs),
         made.outputs);
 }
 

@@ -1,8 +1,8 @@
 #include "apps/capture/tables.h"
 
 #include "apps/capture/tolerances.h"
-#include "conetrace/frame/specular_albedo.h"
 #include "conetrace/caches/gather.h"
+#include "conetrace/frame/specular_albedo.h"
 #include "conetrace/vct/gather.h"
 
 #include <algorithm>
@@ -100,7 +100,8 @@ void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
          {"where a cone takes its samples; rows of 0 after the last step", "along the cone from its apex", "base voxels"});
     rows(tables.steps, {"schedule"}, {}, {"steps of each schedule", "", ""});
     rows(tables.gaussian, {"entry"}, {}, {"Phi over [-5, 5], linear between entries", "", ""});
-    rows(tables.cosineShare, {"node_row", "node_column", "row", "column"}, {}, {"share of each texel of a cache in the irradiance of a node's normal", "cache", ""});
+    rows(tables.cosineShare, {"node_row", "node_column", "row", "column"}, {},
+         {"share of each texel of a cache in the irradiance of a node's normal", "cache", ""});
     rows(tables.solidAngle, {"row", "column"}, {}, {"of a cache's texels", "cache", "sr"});
     rows(tables.specularAlbedo, {"roughness", "root_n_dot_v"}, {"scale", "bias"},
          {"directional albedo of the lobe = F0 scale + bias; over roughness and sqrt(n.v), both 0 .. 1", "", ""});

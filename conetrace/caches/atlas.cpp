@@ -57,8 +57,8 @@ void fillCacheLevel(CacheAtlas& atlas, int level, const CacheTables& tables, con
         for (std::size_t row = 0; row < n; ++row)
             for (std::size_t column = 0; column < n; ++column) {
                 const std::size_t top = 2 * row * below + 2 * column, bottom = top + below;
-                const Vec4 sum = (weights[top] * from[top] + weights[top + 1] * from[top + 1]) +
-                                 (weights[bottom] * from[bottom] + weights[bottom + 1] * from[bottom + 1]);
+                const Vec4 sum =
+                    (weights[top] * from[top] + weights[top + 1] * from[top + 1]) + (weights[bottom] * from[bottom] + weights[bottom + 1] * from[bottom + 1]);
                 const float whole = (weights[top] + weights[top + 1]) + (weights[bottom] + weights[bottom + 1]);
                 texels[(cache * n + row) * n + column] = storedTexel(sum / whole, settings, counts);
             }

@@ -52,7 +52,8 @@ std::vector<Group> groupsOf(const std::vector<Entry>& entries)
     return groups;
 }
 
-/// Clusters of fewer than `least` pixels join the tile's nearest in depth, of those that have as many, on the same side of the same axis (ties: the nearer to the eye).
+/// Clusters of fewer than `least` pixels join the tile's nearest in depth, of those that have as many, on the same side of the same axis (ties: the nearer to
+/// the eye).
 void joinSmall(std::vector<Entry>& entries, std::size_t least)
 {
     constexpr std::uint32_t kAxisMask = (1u << kSliceShift) - 1;

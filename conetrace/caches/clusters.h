@@ -10,8 +10,8 @@ namespace lrsm {
 
 /// Clusters are numbered tile by tile, in a tile by key; the pixels of a cluster are in the picture's order.
 struct PixelClusters {
-    int tile = 0;                          ///< pixels along its edge: rc_tile, doubled while there were more than rc_max clusters
-    int doublings = 0;                     ///< how often that was
+    int tile = 0;       ///< pixels along its edge: rc_tile, doubled while there were more than rc_max clusters
+    int doublings = 0;  ///< how often that was
     int tilesX = 0, tilesY = 0;
     std::vector<NormalAxes> axes;          ///< of each tile, row by row; 0 where nothing was drawn in it
     std::vector<std::uint32_t> tileFirst;  ///< clusters of tile t: [tileFirst[t], tileFirst[t + 1])

@@ -63,7 +63,8 @@ Vec3 specularOf(const CacheWorld& world, std::size_t pixel, int x, int y)
 Vec4 diffuseOf(const CacheWorld& world, std::uint32_t cache, const Vec3& normal)
 {
     const Vec2 uv = squareFromHemisphere(inCacheFrame(world, cache, normal), world.settings.mapping);
-    return sampleSquare(world.atlas.diffuse.data() + std::size_t(cache) * std::size_t(kDiffuseNodes * kDiffuseNodes), kDiffuseNodes, uv * float(kDiffuseNodes - 1));
+    return sampleSquare(world.atlas.diffuse.data() + std::size_t(cache) * std::size_t(kDiffuseNodes * kDiffuseNodes), kDiffuseNodes,
+                        uv * float(kDiffuseNodes - 1));
 }
 
 Vec4 radianceOf(const CacheWorld& world, std::uint32_t cache, const Vec3& direction, float level)

@@ -72,8 +72,9 @@ Vec4 diffuseOf(const CacheWorld& world, std::uint32_t cache, const Vec3& normal)
 /// Mean radiance (times the pre-exposure) and opacity about a direction at a mip level, trilinear.
 Vec4 radianceOf(const CacheWorld& world, std::uint32_t cache, const Vec3& direction, float level);
 
-/// Level whose texels have the solid angle of a lobe, log2(Omega N^2 / 2 pi) / 2 in [0, log2 N]. A Phong lobe of exponent n stands for GGX's: alpha = (2n + 1)^-1/2.
-/// `equivalent`: Omega = 2 pi (2n + 1) / (n + 1)^2; `cutoff`: the cone at whose rim the lobe falls to 1 %, 2 pi (1 - .01^(1/n)). Error <= kLobeLevelMaxError.
+/// Level whose texels have the solid angle of a lobe, log2(Omega N^2 / 2 pi) / 2 in [0, log2 N]. A Phong lobe of exponent n stands for GGX's: alpha = (2n +
+/// 1)^-1/2. `equivalent`: Omega = 2 pi (2n + 1) / (n + 1)^2; `cutoff`: the cone at whose rim the lobe falls to 1 %, 2 pi (1 - .01^(1/n)). Error <=
+/// kLobeLevelMaxError.
 inline constexpr float kLobeLevelMaxError = 3e-6f;
 float lobeLevel(float roughness, int resolution, CacheLobe lobe);
 

@@ -64,10 +64,10 @@ std::string explainCaches(const GatherInput& input, int x, int y)
         const Vec3 toEye = glm::normalize(directionToEye(input.camera, gbuffer.position.texels[pixel]));
         const Vec3 mirror = mirrorDirection(gbuffer.normal.texels[pixel], toEye);
         const float roughness = gbuffer.roughness.texels[pixel];
-        text += formatted("specular: towards %.4f %.4f %.4f at roughness %.3f, level %.3f of the caches: I = %.6g %.6g %.6g\n", double(mirror.x),
-                          double(mirror.y), double(mirror.z), double(roughness),
-                          double(lobeLevel(roughness, caches.atlas.resolution, input.settings.caches.lobe)), double(light.specular.x),
-                          double(light.specular.y), double(light.specular.z));
+        text +=
+            formatted("specular: towards %.4f %.4f %.4f at roughness %.3f, level %.3f of the caches: I = %.6g %.6g %.6g\n", double(mirror.x), double(mirror.y),
+                      double(mirror.z), double(roughness), double(lobeLevel(roughness, caches.atlas.resolution, input.settings.caches.lobe)),
+                      double(light.specular.x), double(light.specular.y), double(light.specular.z));
     }
     return text + originText(input.scene);
 }

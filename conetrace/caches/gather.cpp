@@ -26,7 +26,8 @@ Caches buildCaches(const GatherInput& input, PassLog& log)
     const CacheSettings& settings = input.settings.caches;
     Caches caches;
     caches.clusters = log.run("rc clusters", kSurfacePass, [&] { return clusterPixels(input.gbuffer, input.camera, settings); });
-    caches.places = log.run("rc places", kSurfacePass, [&] { return placeCaches(input.gbuffer, input.camera, caches.clusters, settings, input.settings.cones.set.rotation); });
+    caches.places = log.run("rc places", kSurfacePass,
+                            [&] { return placeCaches(input.gbuffer, input.camera, caches.clusters, settings, input.settings.cones.set.rotation); });
     const CacheTables tables = makeCacheTables(settings, input.settings.cones.set.rotation);
     CacheAtlas filled = fill(input, caches.places, tables, log);
     caches.atlas = log.run("rc convolve", kSurfacePass, [&] { return convolveCaches(std::move(filled), tables, settings); });
@@ -48,9 +49,9 @@ Gathered gatherCaches(const GatherInput& input, PassLog& log)
     return gathered;
 }
 
-GatherMethod cachesMethod(CacheFill fill)
+GatherMethod cachesMethod()
 {
-    return {.reads = {.bits = true, .mips = fill == CacheFill::lrsm}, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
+    return {.reads = {.bits = true, .mips = true}, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
 }
 
 }  // namespace lrsm

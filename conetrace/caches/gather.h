@@ -14,13 +14,13 @@ struct Caches {
     CacheAtlas atlas;
 };
 
-/// The passes that the filling reads (of rc_fill=lrsm "lrsm 0", ...), then "rc clusters", "rc places", "rc fill" and "rc convolve".
+/// The passes "rc clusters", "rc places", those of the LRSMs ("lrsm 0", ...), "rc fill" and "rc convolve".
 Caches buildCaches(const GatherInput& input, PassLog& log);
 
 /// The passes above and "rc gather". Whoever watches the log is shown the Caches under "rc gather" too.
 Gathered gatherCaches(const GatherInput& input, PassLog& log);
 
 /// The line of the frame's switch.
-GatherMethod cachesMethod(CacheFill fill);
+GatherMethod cachesMethod();
 
 }  // namespace lrsm

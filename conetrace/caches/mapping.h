@@ -36,12 +36,13 @@ inline constexpr int kSubdirections = 4;  ///< along an edge of a texel, for mea
 /// What all caches of a frame share, made once in double.
 struct CacheTables {
     CacheMapping mapping = CacheMapping::equalArea;
-    int resolution = 0;                          ///< N, texels along an edge
+    int resolution = 0;  ///< N, texels along an edge
     /// Of the texels' cones, [rotation * N^2 + row * N + column]: through their middles, or with rotation=strata through the stratumPlace of each rotation.
     std::vector<Vec3> directions;
     std::vector<std::vector<float>> solidAngle;  ///< of the texels of each level, sr; those of a level sum to 2 pi
-    /// Of each of the kDiffuseNodes^2 normals m, (column, row) / (kDiffuseNodes - 1) in the square, the share of each texel in the irradiance, [m * N^2 + texel]: E(m) = pi sum share L. `renormalise`: <m.w> dw
-    /// over its sum over the cache's hemisphere; `black`: over pi. <m.w>+ is the mean over kSubdirections^2 directions of the texel.
+    /// Of each of the kDiffuseNodes^2 normals m, (column, row) / (kDiffuseNodes - 1) in the square, the share of each texel in the irradiance, [m * N^2 +
+    /// texel]: E(m) = pi sum share L. `renormalise`: <m.w> dw over its sum over the cache's hemisphere; `black`: over pi. <m.w>+ is the mean over
+    /// kSubdirections^2 directions of the texel.
     std::vector<float> cosineShare;
 
     std::size_t texels() const { return std::size_t(resolution) * std::size_t(resolution); }

@@ -12,10 +12,7 @@ namespace {
 struct Clustered {
     std::size_t caches = 0, covered = 0, tiles = 0, pixels = 0;
     /// PixelClusters: axes; ranges of tiles; keys and ranges of clusters; sorted pixels; the cluster of each pixel.
-    std::size_t bytes() const
-    {
-        return tiles * sizeof(NormalAxes) + ((tiles + 1) + caches + (caches + 1) + covered + pixels) * sizeof(std::uint32_t);
-    }
+    std::size_t bytes() const { return tiles * sizeof(NormalAxes) + ((tiles + 1) + caches + (caches + 1) + covered + pixels) * sizeof(std::uint32_t); }
 };
 
 /// As rendered, or the most that can be: a cluster has a pixel.

@@ -9,8 +9,8 @@
 /// The three directions that a tile's normals need: [C] Sec. 3.2, "Adapting to Normals".
 namespace lrsm {
 
-inline constexpr int kNormalBins = 16;          ///< edge of the octahedral histogram
-inline constexpr float kNormalSharpness = 30;   ///< of its blur, exp(30 (n_i.n_j - 1)): half at 12 degrees
+inline constexpr int kNormalBins = 16;         ///< edge of the octahedral histogram
+inline constexpr float kNormalSharpness = 30;  ///< of its blur, exp(30 (n_i.n_j - 1)): half at 12 degrees
 
 /// Bin of a unit normal, row * kNormalBins + column: the whole sphere as an octahedron unfolded to a square.
 int normalBin(const Vec3& normal);

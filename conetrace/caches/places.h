@@ -29,9 +29,9 @@ void forEachArray(const CachePlaces& places, Visit&& visit)
 
 /// What the score of a cluster's pixels is taken against.
 struct ClusterFrame {
-    Vec3 centre{0.0f};   ///< c, of the bounding box of its positions
-    Vec3 normal{0.0f};   ///< n_c, mean of its shading normals, unit; where they cancel, its first pixel's
-    float length = 1.0f; ///< s, metres: that box's diagonal, or 1
+    Vec3 centre{0.0f};    ///< c, of the bounding box of its positions
+    Vec3 normal{0.0f};    ///< n_c, mean of its shading normals, unit; where they cancel, its first pixel's
+    float length = 1.0f;  ///< s, metres: that box's diagonal, or 1
 };
 ClusterFrame frameOfCluster(const GBuffer& gbuffer, std::span<const std::uint32_t> pixels, CacheScoreScale scale);
 

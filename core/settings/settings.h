@@ -183,19 +183,16 @@ struct VctSettings {
     bool operator==(const VctSettings&) const = default;
 };
 
-enum class CacheFill { lrsm, vct, voxels };             ///< what a cache's cones are traced through
-enum class CacheMapping { equalArea, octahedral };     ///< of a cache's hemisphere to its square of texels
-enum class CacheHorizon { renormalise, black };        ///< below a cache's own horizon: as the mean above it, or nothing
-enum class CacheLobe { equivalent, cutoff };           ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
-enum class CacheScoreScale { cluster, metre };         ///< length that the placement's score measures distances in
-enum class CachePlacement { clustered, grid };         ///< a cache a cluster, or one a tile at its middle
+enum class CacheMapping { equalArea, octahedral };  ///< of a cache's hemisphere to its square of texels
+enum class CacheHorizon { renormalise, black };     ///< below a cache's own horizon: as the mean above it, or nothing
+enum class CacheLobe { equivalent, cutoff };        ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
+enum class CacheScoreScale { cluster, metre };      ///< length that the placement's score measures distances in
 
 /// Clustered pre-convolved radiance caching.
 struct CacheSettings {
-    CacheFill fill = CacheFill::lrsm;
-    int tile = 32;        ///< pixels along an edge of a tile, power of two, 1..256
-    int resolution = 16;  ///< texels (cones) along an edge of a cache, power of two, 2..32
-    float radius = 1.0f;  ///< of a cache's influence in tiles, on screen and at its depth, (0, 8]
+    int tile = 32;           ///< pixels along an edge of a tile, power of two, 1..256
+    int resolution = 16;     ///< texels (cones) along an edge of a cache, power of two, 2..32
+    float radius = 1.0f;     ///< of a cache's influence in tiles, on screen and at its depth, (0, 8]
     float minCosine = 0.5f;  ///< least cosine between a pixel's normal and that of a cache it reads, [-1, 1)
     int minPixels = 0;       ///< smaller clusters join the tile's nearest of the same axis, 0..65536
     int maxCaches = 16384;   ///< beyond, tiles double, 1..2^22
@@ -203,7 +200,6 @@ struct CacheSettings {
     CacheHorizon horizon = CacheHorizon::renormalise;
     CacheLobe lobe = CacheLobe::equivalent;
     CacheScoreScale scoreScale = CacheScoreScale::cluster;
-    CachePlacement placement = CachePlacement::clustered;
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
     bool operator==(const CacheSettings&) const = default;

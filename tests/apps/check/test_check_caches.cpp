@@ -92,7 +92,8 @@ TEST_CASE("check of method caches: a defect in any buffer of its passes is found
                 CHECK(follows);
             }
     }
-    for (const char* family : {"rc clusters", "rc places", "rc fill", "rc convolve", "rc gather"}) CHECK(std::count(families.begin(), families.end(), family) >= 1);
+    for (const char* family : {"rc clusters", "rc places", "rc fill", "rc convolve", "rc gather"})
+        CHECK(std::count(families.begin(), families.end(), family) >= 1);
 }
 
 TEST_CASE("check of method caches: names the setting that a candidate has otherwise", "[capture][check][caches]")

@@ -89,8 +89,8 @@ TEST_CASE("method caches: a furnace, caches that all see L, gives every pixel pi
     atlas.preExposure = 4.0f;
     atlas.levels.emplace_back(places.size() * 64, Vec4(Vec3(2.0f), 1.0f));
     atlas = convolveCaches(std::move(atlas), makeCacheTables(settings, Rotation::none), settings);
-    const Gathered light = evaluateCaches(
-        {.gbuffer = g, .camera = scene->cameras[0], .clusters = clusters, .places = places, .atlas = atlas, .settings = settings}, needs);
+    const Gathered light =
+        evaluateCaches({.gbuffer = g, .camera = scene->cameras[0], .clusters = clusters, .places = places, .atlas = atlas, .settings = settings}, needs);
     std::size_t glossy = 0;
     for (std::size_t i = 0; i < g.objectId.texels.size(); ++i) {
         if (!g.covered(i)) continue;
@@ -144,15 +144,15 @@ TEST_CASE("method caches: with a cache a pixel the picture is that of as many co
 {
     const auto scene = makeBuiltinScene("cornell-box");
     Settings caches = smallCaches();
+    caches.caches.resolution = 16;
     caches.caches.tile = 1;
     caches.caches.radius = 0.5f;
     Settings cones = caches;
     cones.method = Method::lrsm;
-    cones.cones.set.count = 64;
-    cones.cones.set.filter = false;
+    cones.cones.set.count = 256;
     const Frame cached = renderSmall(*scene, caches), traced = renderSmall(*scene, cones);
-    CHECK(mean(cached.irradiance) / mean(traced.irradiance) == Approx(1.0).margin(0.01));
-    CHECK(difference(cached.irradiance, traced.irradiance) < 0.06);
+    CHECK(mean(cached.irradiance) / mean(traced.irradiance) == Approx(1.0).margin(0.02));
+    CHECK(difference(cached.irradiance, traced.irradiance) < 0.12);
 }
 
 TEST_CASE("method caches: holds what it predicts, and explains the pixel that it draws", "[caches]")

@@ -91,7 +91,8 @@ TEST_CASE("normal axes: weights fall as the paper has it, against a selection in
             const auto best = std::size_t(std::max_element(w.begin(), w.end()) - w.begin());
             // Of bins of all but one weight either may be taken.
             CHECK(w[std::size_t(normalBin(axis))] > w[best] * (1.0 - 1e-5));
-            for (int i = 0; i < 256; ++i) w[std::size_t(i)] = (w[std::size_t(i)] + 1.0) * (1.0 - std::pow(std::abs(double(glm::dot(normalOfBin(i), axis))), 8.0));
+            for (int i = 0; i < 256; ++i)
+                w[std::size_t(i)] = (w[std::size_t(i)] + 1.0) * (1.0 - std::pow(std::abs(double(glm::dot(normalOfBin(i), axis))), 8.0));
             CHECK(w[std::size_t(normalBin(axis))] < 1e-3);
         }
     }

@@ -28,7 +28,8 @@ CacheAtlas cacheThatSees(const CacheSettings& settings, const CacheTables& table
     atlas.half = settings.storage == Storage::gpu;
     atlas.levels.emplace_back();
     ConversionCounts counts;
-    for (const Vec3& direction : std::span(tables.directions).first(tables.texels())) atlas.levels[0].push_back(storedTexel(Vec4(radiance(direction)), settings, counts));
+    for (const Vec3& direction : std::span(tables.directions).first(tables.texels()))
+        atlas.levels[0].push_back(storedTexel(Vec4(radiance(direction)), settings, counts));
     return convolveCaches(std::move(atlas), tables, settings);
 }
 
@@ -98,9 +99,11 @@ TEST_CASE("cache mapping: the square of a direction is where the direction came 
     CHECK(worst > 0.0);
     CHECK(squareFromHemisphere(Vec3(0, 0, 1), mapping) == Vec2(0.5f));
     CHECK(squareFromHemisphere(Vec3(0, 0, -1), mapping) == Vec2(0.5f));
-    const Vec2 below = squareFromHemisphere(glm::normalize(Vec3(1.0f, 0.2f, -0.5f)), mapping), rim = squareFromHemisphere(glm::normalize(Vec3(1.0f, 0.2f, 0.0f)), mapping);
+    const Vec2 below = squareFromHemisphere(glm::normalize(Vec3(1.0f, 0.2f, -0.5f)), mapping),
+               rim = squareFromHemisphere(glm::normalize(Vec3(1.0f, 0.2f, 0.0f)), mapping);
     CHECK(glm::length(below - rim) < 1e-5f);
-    for (double t = -1.0; t <= 1.0; t += 1e-3) REQUIRE(std::abs(double(octantArcTangent(float(t))) - std::atan(double(float(t)))) < double(kOctantArcTangentMaxError));
+    for (double t = -1.0; t <= 1.0; t += 1e-3)
+        REQUIRE(std::abs(double(octantArcTangent(float(t))) - std::atan(double(float(t)))) < double(kOctantArcTangentMaxError));
 }
 
 TEST_CASE("caches convolved: constant radiance L is L in each mip and pi L for each normal, in half as well", "[caches]")
@@ -151,7 +154,8 @@ TEST_CASE("caches: the level of a lobe is that of its solid angle", "[caches]")
         const double alpha = double(roughness) * double(roughness), n = (1.0 / (alpha * alpha) - 1.0) / 2.0;
         const auto level = [&](double omega) { return std::clamp(0.5 * std::log2(omega * 256.0 / kTwoPi), 0.0, 4.0); };
         CAPTURE(roughness);
-        CHECK(std::abs(double(lobeLevel(roughness, 16, CacheLobe::equivalent)) - level(kTwoPi * (2 * n + 1) / ((n + 1) * (n + 1)))) < double(kLobeLevelMaxError));
+        CHECK(std::abs(double(lobeLevel(roughness, 16, CacheLobe::equivalent)) - level(kTwoPi * (2 * n + 1) / ((n + 1) * (n + 1)))) <
+              double(kLobeLevelMaxError));
         CHECK(std::abs(double(lobeLevel(roughness, 16, CacheLobe::cutoff)) - level(kTwoPi * (1.0 - std::pow(0.01, 1.0 / n)))) < double(kLobeLevelMaxError));
     }
     // [C]'s exponents 50 and 150 at N = 16.
