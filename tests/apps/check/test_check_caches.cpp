@@ -48,11 +48,6 @@ void plantIn(Buffer& buffer)
     }
 }
 
-bool textHas(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
-}
-
 std::string hintOf(const std::string& assignment, const std::string& pass)
 {
     Capture copy = cachesGolden(), inputs = cachesGolden();

