@@ -40,9 +40,9 @@ inline constexpr float kProjectionMaxError = 5e-7f;  ///< spot, cube face
 inline constexpr float kDirectionalProjectionMaxError = 1e-7f;
 LightSpacePoint projectToLight(const LightProjection& projection, const Vec3& pWorld);
 
-/// The inverse: the place at (u, v) and linear depth. Within kUnprojectionMaxError, in metres for scenes of some metres, of what was projected.
+/// The inverse: the place at (u, v) and linear depth. Within kUnprojectionMaxError, in metres for lights 20 m away, of what was projected.
 Vec3 unprojectFromLight(const LightProjection& projection, float u, float v, float depth);
-inline constexpr float kUnprojectionMaxError = 5e-6f;
+inline constexpr float kUnprojectionMaxError = 1.2e-5f;
 
 /// World-to-clip for the rasterizer; z/w in [0, 1].
 Mat4 clipFromWorld(const LightProjection& projection);

@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kReach = 2;
 
+}  // namespace
+
 Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows, int x, int y)
 {
     const std::size_t centre = irradiance.index(x, y);
@@ -27,8 +29,6 @@ Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows
     }
     return sum / total;
 }
-
-}  // namespace
 
 Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows)
 {

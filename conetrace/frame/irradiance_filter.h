@@ -8,6 +8,8 @@ namespace lrsm {
 /// 1/16), over the pixels that lie on the same surface: normals within about 25 degrees, and each pixel within a tenth of their
 /// distance from the other's tangent plane. A constant field stays constant. `rows`: of the picture, from the top; what is below stays as it is.
 Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows);
+/// The same of one pixel.
+Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows, int x, int y);
 inline Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer)
 {
     return filterIrradiance(irradiance, gbuffer, gbuffer.height);

@@ -33,8 +33,9 @@ Polygon polygonOf(const LightView& view, const std::array<DVec3, 3>& p, double n
 LightGrid::LightGrid(const DVec2& min, const DVec2& max, double cells)
 {
     const DVec2 extent = max - min;
-    // A line of surfaces, or a point, still has an area.
-    const double longest = std::max({extent.x, extent.y, std::numeric_limits<double>::min()});
+    // A line of surfaces, or a point, still has an area, and one that a double can hold.
+    constexpr double kLeastExtent = 0x1p-500;
+    const double longest = std::max({extent.x, extent.y, kLeastExtent});
     const DVec2 size = glm::max(extent, DVec2(longest / kMostCells));
     min_ = min;
     scale_ = std::min(std::sqrt(cells / (size.x * size.y)), kMostCells / longest);

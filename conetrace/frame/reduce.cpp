@@ -1,6 +1,8 @@
 #include "conetrace/frame/reduce.h"
 
+#include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/frame/same_surface.h"
+#include "conetrace/frame/tiles.h"
 
 #include <algorithm>
 #include <array>
@@ -77,9 +79,22 @@ Image<T> upsampleImage(const Image<T>& values, const ReducedGBuffer& reduced, co
             if (blend.weight[k] > 0.0f) sum += blend.weight[k] * values.texels[blend.block[k]];
         out.at(x, y) = sum / total;
     });
-    const std::size_t first = std::size_t(reduced.blockRows) * std::size_t(reduced.gbuffer.width);
-    for (std::size_t i = first; i < reduced.source.size(); ++i) out.texels[reduced.source[i]] = values.texels[i];
+    for (std::size_t i = reduced.blockCount(); i < reduced.source.size(); ++i) out.texels[reduced.source[i]] = values.texels[i];
     return out;
+}
+
+/// Pixels that stand alone have one rotation each: averaged with what is around them on their surface, blocks' pixels among it.
+void filterAlone(Image<Vec3>& irradiance, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
+{
+    const std::size_t first = reduced.blockCount();
+    std::vector<Vec3> filtered(reduced.source.size() - first);
+    parallelFor(filtered.size(), std::size_t(kTile) * kTile, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const int pixel = static_cast<int>(reduced.source[first + i]);
+            filtered[i] = filterPixel(irradiance, gbuffer, gbuffer.height, pixel % gbuffer.width, pixel / gbuffer.width);
+        }
+    });
+    for (std::size_t i = 0; i < filtered.size(); ++i) irradiance.texels[reduced.source[first + i]] = filtered[i];
 }
 
 }  // namespace
@@ -128,6 +143,7 @@ Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GB
     out.specular = upsampleImage(light.specular, reduced, gbuffer);
     out.opacity = upsampleImage(light.opacity, reduced, gbuffer);
     out.filter4x4 = light.filter4x4;
+    if (light.filter4x4) filterAlone(out.irradiance, reduced, gbuffer);
     return out;
 }
 

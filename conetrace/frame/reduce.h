@@ -21,6 +21,8 @@ struct ReducedGBuffer {
     int blockRows = 0;                  ///< rows of the G-buffer that are blocks; what averages neighbours keeps to them
     std::vector<std::uint32_t> source;  ///< the full G-buffer's pixel of each of the reduced one's, as far as those that stand alone
     std::uint64_t alone = 0;
+
+    std::size_t blockCount() const { return std::size_t(blockRows) * std::size_t(gbuffer.width); }
 };
 
 template <class Visit>
@@ -39,7 +41,8 @@ inline Counters countersOf(const ReducedGBuffer& reduced)
 ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor);
 
 /// Light gathered for `reduced` at each pixel of the G-buffer that it was made of: of the four blocks around a pixel those on its surface (same_surface.h), by
-/// bilinear weights that sum to 1. Bilinear fields on a plane are kept, up to the edge of the picture.
+/// bilinear weights that sum to 1. Bilinear fields on a plane are kept between the outermost blocks' pixels. Where directions alternate over 4x4 pixels, those that
+/// stand alone are averaged with their neighbours once they all have light.
 Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GBuffer& gbuffer);
 
 }  // namespace lrsm

@@ -197,7 +197,7 @@ TEST_CASE("light projection: what is projected is found again", "[lrsm][projecti
     Random random(9);
     const LightType type = GENERATE(LightType::directional, LightType::spot, LightType::cubeFace);
     float largest = 0.0f;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 20000; ++i) {
         const LightProjection q = fitLightProjection(randomLight(random, type, kAround), kBounds, 512);
         const Vec3 p = pointIn(random, kBounds);
         const LightSpacePoint s = projectToLight(q, p);
