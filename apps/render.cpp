@@ -5,11 +5,12 @@
 #include "apps/common/memory.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
+#include "apps/common/sequence.h"
 #include "apps/validate/split.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
-#include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
+#include "core/settings/settings_table.h"
 
 #include <cmath>
 #include <iomanip>
@@ -22,7 +23,10 @@ namespace lrsm {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct RenderArguments : CommonOptions {
+    SequenceArguments sequence;
     std::string output, pixel, exposure = "auto", radiance = "lrsm";
     double maxMemoryMegabytes = 0.0;
     int lanes = 0;
@@ -49,63 +53,125 @@ void printSummary(const Frame& frame, const std::vector<MemoryRow>& memory, cons
     std::cout << where << ": image.exr, image.png and one PNG a part, frame.json\n";
 }
 
-int runRender(const RenderArguments& options)
+/// What a frame is rendered with, besides its scene.
+struct RenderPlan {
+    const RenderArguments& arguments;
+    Settings settings;
+    IVec2 size{0};
+    std::optional<float> exposure;
+    RenderOptions options;
+};
+
+RenderPlan planRender(const RenderArguments& arguments)
 {
-    if (options.output.empty() && options.pixel.empty()) throw InputError("render", "needs -o FOLDER (or --pixel x,y)");
-    const Settings settings = chosenSettings(options);
-    const IVec2 size = chosenSize(options);
-    const std::optional<float> exposure = parseExposure(options.exposure);
-    if (std::isnan(options.maxMemoryMegabytes) || options.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
-    RenderOptions renderOptions{.width = size.x, .height = size.y, .lanes = options.lanes, .watch = {}, .method = chosenMethod(options, settings)};
-    std::optional<IVec2> pixel;
-    if (!options.pixel.empty()) pixel = parsePixel(options.pixel, size);
-    std::optional<OutputFolder> folder;
-    if (!options.output.empty()) folder.emplace(options.output);
+    RenderPlan plan{arguments, chosenSettings(arguments), chosenSize(arguments), parseExposure(arguments.exposure), {}};
+    if (std::isnan(arguments.maxMemoryMegabytes) || arguments.maxMemoryMegabytes < 0.0) throw InputError("--max-memory", "must be 0 (no limit) or more");
+    plan.options = {.width = plan.size.x, .height = plan.size.y, .lanes = arguments.lanes, .watch = {}, .method = chosenMethod(arguments, plan.settings)};
+    return plan;
+}
 
-    const ThreadLimit threads(options.threads);
-    const Scene scene = loadChosenScene(options);
-    const Camera camera = chosenCamera(scene, options);
-    const Requirements needs = prepare(scene, settings);
-    MemoryQuestion memory{scene, needs, settings, size.x, size.y};
-    enforceMemoryLimit(memory, options.maxMemoryMegabytes);
+struct Rendered {
+    Json json;  ///< frame.json
+    Frame frame;
+    std::vector<MemoryRow> memory;
+};
 
-    say(loadMessages(scene));
-    say(extentMessages(scene, camera, settings));
-    if (pixel) std::cout << explainPixel(scene, camera, settings, renderOptions, pixel->x, pixel->y);
-    if (!folder) return 0;
+/// Refuses what cannot be rendered, and tells what the user should know before.
+void admit(const RenderPlan& plan, const Scene& scene, const Camera& camera, SayOnce& sayOnce)
+{
+    const Requirements needs = prepare(scene, plan.settings);
+    enforceMemoryLimit({scene, needs, plan.settings, plan.size.x, plan.size.y}, plan.arguments.maxMemoryMegabytes);
+    sayOnce(loadMessages(scene));
+    sayOnce(extentMessages(scene, camera, plan.settings));
+}
 
-    Progress progress(options.quiet);
-    renderOptions.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+/// One frame to its files, which are not committed.
+Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& scene, const Camera& camera, const std::string& sceneHash, SayOnce& sayOnce)
+{
+    Progress progress(plan.arguments.quiet);
+    RenderOptions options = plan.options;
+    options.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     std::optional<Caches> caches;
-    if (settings.method == Method::caches)
-        renderOptions.watch.observe = [&](const std::string&, const PassOutput& output) {
+    if (plan.settings.method == Method::caches)
+        options.watch.observe = [&](const std::string&, const PassOutput& output) {
             if (const auto* made = output.as<Caches>()) caches = *made;
         };
-    const Frame frame = renderFrame(scene, camera, settings, renderOptions);
+    Rendered rendered{.json = {}, .frame = renderFrame(scene, camera, plan.settings, options), .memory = {}};
+    const Frame& frame = rendered.frame;
     progress.show("writing", 0.0);
 
+    MemoryQuestion memory{scene, frame.needs, plan.settings, plan.size.x, plan.size.y};
     memory.rendered = &frame.passes;
     FrameRecord record{.scene = scene,
                        .camera = camera,
-                       .settings = settings,
-                       .preset = options.preset,
-                       .sceneHash = hashScene(scene),
+                       .settings = plan.settings,
+                       .preset = plan.arguments.preset,
+                       .sceneHash = sceneHash,
                        .memory = predictMemory(memory),
-                       .exposureStops = exposure,
-                       .radiance = options.radiance,
+                       .exposureStops = plan.exposure,
+                       .radiance = plan.arguments.radiance,
                        .caches = caches ? &*caches : nullptr};
     addMeasured(record.memory, frame.passes);
-    const nlohmann::ordered_json json = frameJson(frame, record);
-    writeFrame(*folder, frame, record, json);
-    folder->commit();
+    rendered.json = frameJson(frame, record);
+    writeFrame(folder, frame, record, rendered.json);
     progress.clear();
-    say(passMessages(frame.passes));
-    say(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
+    sayOnce(passMessages(frame.passes));
+    sayOnce(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
+    rendered.memory = std::move(record.memory);
+    return rendered;
+}
 
-    if (options.json)
-        std::cout << jsonText(json);
-    else if (!options.quiet)
-        printSummary(frame, record.memory, folder->path().string());
+int renderFrames(const RenderPlan& plan, const FrameRange& range)
+{
+    const RenderArguments& arguments = plan.arguments;
+    SayOnce sayOnce;
+    return runSequence({.range = range,
+                        .folder = arguments.output,
+                        .common = {{"command", "render"},
+                                   {"size", {plan.size.x, plan.size.y}},
+                                   {"exposure", arguments.exposure},
+                                   {"radiance", arguments.radiance},
+                                   {"preset", arguments.preset},
+                                   {"settings", settingsToJson(plan.settings)}},
+                        .mainFile = "image.exr",
+                        .quiet = arguments.quiet,
+                        .json = arguments.json,
+                        .make =
+                            [&](const SequenceFrame& frame, OutputFolder& folder) {
+                                admit(plan, frame.scene, frame.camera, sayOnce);
+                                renderTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, sayOnce);
+                                return true;
+                            }},
+                       arguments);
+}
+
+int runRender(const RenderArguments& arguments)
+{
+    if (arguments.output.empty() && arguments.pixel.empty()) throw InputError("render", "needs -o FOLDER (or --pixel x,y)");
+    const RenderPlan plan = planRender(arguments);
+    std::optional<IVec2> pixel;
+    if (!arguments.pixel.empty()) pixel = parsePixel(arguments.pixel, plan.size);
+    const ThreadLimit threads(arguments.threads);
+    if (const std::optional<FrameRange> range = chosenFrames(arguments.sequence)) {
+        if (pixel) throw InputError("--pixel", "is of one picture; give --time in place of --frames");
+        return renderFrames(plan, *range);
+    }
+    std::optional<OutputFolder> folder;
+    if (!arguments.output.empty()) folder.emplace(arguments.output);
+
+    const Scene scene = loadChosenScene(arguments);
+    const Camera camera = chosenCamera(scene, arguments);
+    SayOnce sayOnce;
+    admit(plan, scene, camera, sayOnce);
+    if (pixel) std::cout << explainPixel(scene, camera, plan.settings, plan.options, pixel->x, pixel->y);
+    if (!folder) return 0;
+
+    const Rendered rendered = renderTo(*folder, plan, scene, camera, hashScene(scene), sayOnce);
+    folder->commit();
+    if (arguments.json)
+        std::cout << jsonText(rendered.json);
+    else if (!arguments.quiet)
+        printSummary(rendered.frame, rendered.memory, folder->path().string());
     return 0;
 }
 
@@ -119,6 +185,7 @@ Command addRender(CLI::App& program)
     addSettingOptions(*parser, *options);
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
+    addSequenceOptions(*parser, options->sequence);
     parser->add_option("-o,--output", options->output, "folder for the results; they appear whole or not at all");
     parser->add_option("--pixel", options->pixel, "x,y: print how this pixel came about, cone by cone, step by step");
     parser

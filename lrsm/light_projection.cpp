@@ -27,7 +27,15 @@ Aabb alongLight(const LightProjection& projection, const Aabb& box)
     return inLight;
 }
 
-void fitDirectional(LightProjection& projection, const Aabb& bounds, const Aabb& sceneBounds)
+/// Up to the next sixteenth of a power of two.
+double roundedUp(double length)
+{
+    if (!(length > 0.0)) return length;
+    const double step = std::ldexp(1.0, std::ilogb(length) - 4);
+    return std::ceil(length / step) * step;
+}
+
+void fitDirectional(LightProjection& projection, const Aabb& bounds, const Aabb& sceneBounds, RsmSnap snap)
 {
     const Aabb box = alongLight(projection, bounds);
     const Vec3 low(box.min.x, box.min.y, alongLight(projection, sceneBounds).min.z), high = box.max;
@@ -35,9 +43,14 @@ void fitDirectional(LightProjection& projection, const Aabb& bounds, const Aabb&
     // One texel more than the bounds need pays for moving the centre to a whole texel of the light's world-fixed lattice.
     // A map thinner than a millionth of the scene (a line along the light) would be all rounding.
     const double longest = std::max({double(bounds.max.x) - bounds.min.x, double(bounds.max.y) - bounds.min.y, double(bounds.max.z) - bounds.min.z});
-    const double extent = std::max({double(high.x) - low.x, double(high.y) - low.y, longest > 0.0 ? 1e-6 * longest : 1e-6});
-    const double texel = extent / (projection.resolution - 1);
-    const auto snapped = [texel](float a, float b) { return std::floor(0.5 * (double(a) + b) / texel + 0.5) * texel; };
+    const double width = std::max({double(high.x) - low.x, double(high.y) - low.y, longest > 0.0 ? 1e-6 * longest : 1e-6});
+    const glm::dvec3 diagonal = glm::dvec3(bounds.max) - glm::dvec3(bounds.min);
+    const double extent = snap == RsmSnap::sphere ? std::max(width, roundedUp(std::sqrt(glm::dot(diagonal, diagonal)))) : width;
+    const double texel = extent / (snap == RsmSnap::none ? projection.resolution : projection.resolution - 1);
+    const auto snapped = [=](float a, float b) {
+        const double centre = 0.5 * (double(a) + b);
+        return snap == RsmSnap::none ? centre : std::floor(centre / texel + 0.5) * texel;
+    };
     projection.halfWidth = static_cast<float>(0.5 * texel * projection.resolution);
     projection.position =
         projection.right * static_cast<float>(snapped(low.x, high.x)) + projection.up * static_cast<float>(snapped(low.y, high.y)) + projection.forward * low.z;
@@ -71,12 +84,12 @@ void setRow(Mat4& m, int row, const Vec3& axis, const Vec3& origin, float scale,
 
 }  // namespace
 
-LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution)
+LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution, RsmSnap snap)
 {
-    return fitLightProjection(light, sceneBounds, sceneBounds, resolution);
+    return fitLightProjection(light, sceneBounds, sceneBounds, resolution, snap);
 }
 
-LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution)
+LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution, RsmSnap snap)
 {
     const Aabb point{Vec3(0.0f), Vec3(0.0f)};
     const Aabb& whole = sceneBounds.empty() ? point : sceneBounds;
@@ -89,7 +102,7 @@ LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const
     projection.up = glm::cross(projection.right, light.direction);
     projection.resolution = std::max(resolution, 2);
     switch (light.type) {
-    case LightType::directional: fitDirectional(projection, bounds, whole); break;
+    case LightType::directional: fitDirectional(projection, bounds, whole, snap); break;
     case LightType::spot:
         projection.halfWidth = static_cast<float>(tangent(light.outerConeAngle));
         fitPerspective(projection, bounds, whole);

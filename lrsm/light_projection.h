@@ -21,13 +21,13 @@ struct LightProjection {
     float depthRange() const { return depthFar - depthNear; }
 };
 
-/// Spot: field of view = 2 x outer cone angle. Cube face: 90 degrees. Directional: orthographic square fitted to the bounds, snapped to whole texels.
+/// Spot: field of view = 2 x outer cone angle. Cube face: 90 degrees. Directional: orthographic square fitted to the bounds, snapped as `snap` says.
 /// Widths, depths and the centre's lattice keep kFitMaxError for scenes of some metres.
 inline constexpr float kFitMaxError = 1e-6f;
-LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution);
+LightProjection fitLightProjection(const Light& light, const Aabb& sceneBounds, int resolution, RsmSnap snap = RsmSnap::texel);
 
 /// The same for the part `fitted` of the scene: width and far end are its, and what stands between it and the light is still within the range.
-LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution);
+LightProjection fitLightProjection(const Light& light, const Aabb& fitted, const Aabb& sceneBounds, int resolution, RsmSnap snap = RsmSnap::texel);
 
 struct LightSpacePoint {
     float u = 0.0f, v = 0.0f;  ///< [0, 1] inside the map

@@ -70,8 +70,8 @@ Counters countersOf(const Rsm& rsm)
 
 LightProjection projectionOf(const Scene& scene, const Light& light, const RsmSettings& settings)
 {
-    if (!coversPart(scene, settings)) return fitLightProjection(light, scene.bounds, settings.resolution);
-    return fitLightProjection(light, scene.reach, withCasters(scene.reach, scene, light), settings.resolution);
+    if (!coversPart(scene, settings)) return fitLightProjection(light, scene.bounds, settings.resolution, settings.snap);
+    return fitLightProjection(light, scene.reach, withCasters(scene.reach, scene, light), settings.resolution, settings.snap);
 }
 
 Rsm renderRsm(const Scene& scene, const Light& light, const Requirements& needs, const RsmSettings& settings, TextureFilter textureFilter)

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "samples.bin is little-endian; add byte swaps for this machine");
 
-constexpr char kMagic[] = "lrsm samples 2\n";
+constexpr char kMagic[] = "lrsm samples 3\n";
 constexpr std::size_t kHashDigits = 64;
 
 class Writer {
@@ -141,7 +141,7 @@ std::vector<std::byte> encodeCheckpoint(const Checkpoint& checkpoint)
     out.value(state.finished() ? SampleRange{} : state.target);  // what is left to do
     out.values(state.finished() ? std::vector<std::uint32_t>{} : state.tileBlocks);
     out.value(state.rays);
-    out.value(state.invalidSamples);
+    out.value(state.faults);
     out.value(state.finished() ? 0.0 : state.seconds);
     writeSums(out, state.sums);
     writeSums(out, state.base);
@@ -170,7 +170,7 @@ Checkpoint decodeCheckpoint(const std::vector<unsigned char>& bytes, const std::
     checkpoint.state.target = in.value<SampleRange>();
     checkpoint.state.tileBlocks = in.values<std::uint32_t>();
     checkpoint.state.rays = in.value<RayCounts>();
-    checkpoint.state.invalidSamples = in.value<std::uint64_t>();
+    checkpoint.state.faults = in.value<SampleFaults>();
     checkpoint.state.seconds = in.value<double>();
     checkpoint.state.sums = readSums(in, place);
     checkpoint.state.base = readSums(in, place);

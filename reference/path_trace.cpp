@@ -129,24 +129,21 @@ void PathTracer::extend(ReferenceState& state, SampleRange range) const
     ReferenceState next = start(range);
     next.base = std::move(state.sums);
     next.rays = state.rays;
-    next.invalidSamples = state.invalidSamples;
+    next.faults = state.faults;
     next.seconds = state.seconds;
     state = std::move(next);
 }
 
-std::uint64_t PathTracer::addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const
+SampleFaults PathTracer::addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const
 {
     const int channelCount = channels();
-    std::uint64_t invalid = 0;
+    SampleFaults faults;
     std::array<std::array<Int128, kConeChannels>, kTilePixels> tileSums{};
     TileSampler sampler(*this, tile, {segment.block, settings_.blockBits, keyOf(settings_.seed)});
     sampler.drawSamples(tracer, segment.first, segment.last, [&](std::size_t, std::size_t number, const Sample& sample) {
         for (int c = 0; c < channelCount; ++c) {
             const double value = double(sample[std::size_t(c)]) / (c == kOpacity ? 1.0 : unit_);
-            if (std::isfinite(value))
-                tileSums[number][std::size_t(c)] += toFixed(value);
-            else
-                ++invalid;
+            tileSums[number][std::size_t(c)] += toFixed(value, faults);
         }
     });
     forEachPixel(guide_.tiles, tile, [&](std::size_t pixel, std::size_t number) {
@@ -161,7 +158,7 @@ std::uint64_t PathTracer::addTile(Tracer& tracer, SampleSums& sums, PartialBlock
             }
         }
     });
-    return invalid;
+    return faults;
 }
 
 bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, const std::atomic<bool>* stop) const
@@ -183,11 +180,11 @@ bool PathTracer::advance(ReferenceState& state, Clock::time_point deadline, cons
         parallelFor(state.tileBlocks.size(), 1, [&](std::size_t tile, std::size_t) {
             if (state.tileBlocks[tile] != number || halted()) return;
             Tracer tracer(embree_, lights_);
-            const std::uint64_t invalid = addTile(tracer, state.sums, cut, tile, segment);
+            const SampleFaults faults = addTile(tracer, state.sums, cut, tile, segment);
             state.tileBlocks[tile] = number + 1;
             const std::lock_guard lock(reportMutex);
             state.rays += tracer.counts;
-            state.invalidSamples += invalid;
+            state.faults += faults;
         });
     }
     state.seconds += std::chrono::duration<double>(Clock::now() - begun).count();

@@ -45,8 +45,8 @@ struct ReferenceState {
     SampleSums base;  ///< finished earlier, joined to `sums` when the target is finished; no ranges: none
     std::vector<std::uint32_t> tileBlocks;
     RayCounts rays;
-    std::uint64_t invalidSamples = 0;  ///< NaN or infinite contributions, counted as 0
-    double seconds = 0.0;              ///< spent tracing
+    SampleFaults faults;
+    double seconds = 0.0;  ///< spent tracing
     bool finished() const { return !sums.ranges.empty(); }
 };
 
@@ -106,7 +106,7 @@ class PathTracer {
   private:
     void shootPrimary(const Camera& camera);
     /// Adds a tile's samples to the sums, or to those of the block that the range cuts. Returns how many values were not finite.
-    std::uint64_t addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const;
+    SampleFaults addTile(Tracer& tracer, SampleSums& sums, PartialBlock* cut, std::size_t tile, const Segment& segment) const;
 
     const Scene& scene_;
     ReferenceSettings settings_;

@@ -67,8 +67,20 @@ SampleSums makeSums(std::size_t pixels, int channels, int blockBits)
     return result;
 }
 
-Int128 toFixed(double value)
+SampleFaults& SampleFaults::operator+=(const SampleFaults& other)
 {
+    notFinite += other.notFinite;
+    clamped += other.clamped;
+    return *this;
+}
+
+Int128 toFixed(double value, SampleFaults& faults)
+{
+    if (!std::isfinite(value)) {
+        ++faults.notFinite;
+        return 0;
+    }
+    if (std::abs(value) > kLargestSample) ++faults.clamped;
     return static_cast<Int128>(std::nearbyint(std::clamp(value, -kLargestSample, kLargestSample) * kSampleScale));
 }
 

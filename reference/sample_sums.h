@@ -45,8 +45,16 @@ struct SampleSums {
 
 SampleSums makeSums(std::size_t pixels, int channels, int blockBits);
 
-/// A sample in units of the scene's unit, |value| <= 2^24 (larger ones saturate; NaN is the caller's matter) to fixed point.
-Int128 toFixed(double value);
+/// Samples that a sum does not hold as they were.
+struct SampleFaults {
+    std::uint64_t notFinite = 0;  ///< NaN or infinite, counted as 0
+    std::uint64_t clamped = 0;    ///< beyond +-2^24 of the scene's unit, counted as that
+    SampleFaults& operator+=(const SampleFaults& other);
+    bool operator==(const SampleFaults&) const = default;
+};
+
+/// A sample in units of the scene's unit to fixed point; what it cannot hold is counted in `faults`.
+Int128 toFixed(double value, SampleFaults& faults);
 /// Square of the mean of a complete block, given the sum of its samples.
 Int128 squareOfBlockMean(Int128 blockSum, int blockBits);
 

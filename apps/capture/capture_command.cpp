@@ -8,9 +8,11 @@
 #include "apps/common/memory.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
+#include "apps/common/sequence.h"
 #include "conetrace/lrsm/memory.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "core/settings/settings_table.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -24,6 +26,7 @@ namespace lrsm {
 namespace {
 
 struct Options : CommonOptions {
+    SequenceArguments sequence;
     std::string output;
     std::vector<std::string> only;
     bool noDds = false, noPictures = false;
@@ -72,23 +75,22 @@ Settings capturedSettings(const Options& options)
     };
     if (settings.method == Method::lrsm && settings.cones.march.visibility != Visibility::cones)
         throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
+    if (settings.cones.set.gatherDivisor != 1) throw InputError("capture", "holds the passes of all pixels; take gather_divisor=1");
     if (!chosen("filter_passes=")) settings.cones.set.filterPasses = 0;
     if (settings.direct.shadows == Shadows::exact && !chosen("shadows=")) settings.direct.shadows = Shadows::hard;
     return settings;
 }
 
-int run(const Options& options)
+struct Captured {
+    std::size_t predictedBytes = 0;
+    Capture capture;
+};
+
+/// One capture to its files, which are not committed.
+Captured captureTo(OutputFolder& folder, const Options& options, const Settings& settings, const Scene& scene, const Camera& camera, SayOnce& sayOnce)
 {
-    if (options.output.empty()) throw InputError("capture", "needs -o FOLDER");
-    const Settings settings = capturedSettings(options);
     const IVec2 size = chosenSize(options);
-    OutputFolder folder(options.output);
-
-    const ThreadLimit threads(options.threads);
-    const Scene scene = loadChosenScene(options);
-    const Camera camera = chosenCamera(scene, options);
     const Requirements needs = analyseRequirements(scene, settings.force);
-
     Progress progress(options.quiet);
     RecordOptions record;
     record.width = size.x, record.height = size.y;
@@ -97,27 +99,68 @@ int run(const Options& options)
     record.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     record.finished = [&](const Frame& frame) {
         progress.clear();
-        say(passMessages(frame.passes));
-        say(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
+        sayOnce(passMessages(frame.passes));
+        sayOnce(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
     };
-    say(loadMessages(scene));
-    say(extentMessages(scene, camera, settings));
-    const std::size_t predicted = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, layersKept({scene, needs, settings, size.x, size.y})));
-    refuseFullDisk(folder, predicted);
-    if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(predicted) << std::endl;
+    sayOnce(loadMessages(scene));
+    sayOnce(extentMessages(scene, camera, settings));
+    Captured captured;
+    captured.predictedBytes = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, layersKept({scene, needs, settings, size.x, size.y})));
+    refuseFullDisk(folder, captured.predictedBytes);
+    if (!options.quiet && !options.json) std::cout << "buffers and textures: " << megabytes(captured.predictedBytes) << std::endl;
 
-    const Capture capture = recordCapture(scene, camera, needs, settings, record, LRSM_VERSION);
+    captured.capture = recordCapture(scene, camera, needs, settings, record, LRSM_VERSION);
     progress.show("writing", 0.0);
-    writeCapture(folder, capture);
-    if (!options.noPictures) writePictures(folder, capture);
-    folder.commit();
+    writeCapture(folder, captured.capture);
+    if (!options.noPictures) writePictures(folder, captured.capture);
     progress.clear();
+    return captured;
+}
 
-    const std::size_t bytes = predictCaptureBytes(capture.buffers);
+int captureFrames(const Options& options, const Settings& settings, const FrameRange& range)
+{
+    const IVec2 size = chosenSize(options);
+    SayOnce sayOnce;
+    return runSequence({.range = range,
+                        .folder = options.output,
+                        .common = {{"command", "capture"},
+                                   {"size", {size.x, size.y}},
+                                   {"only", options.only},
+                                   {"dds", !options.noDds},
+                                   {"pictures", !options.noPictures},
+                                   {"preset", options.preset},
+                                   {"settings", settingsToJson(settings)}},
+                        .mainFile = kManifestFile,
+                        .quiet = options.quiet,
+                        .json = options.json,
+                        .make =
+                            [&](const SequenceFrame& frame, OutputFolder& folder) {
+                                captureTo(folder, options, settings, frame.scene, frame.camera, sayOnce);
+                                return true;
+                            }},
+                       options);
+}
+
+int run(const Options& options)
+{
+    if (options.output.empty()) throw InputError("capture", "needs -o FOLDER");
+    const Settings settings = capturedSettings(options);
+    chosenSize(options);
+    const ThreadLimit threads(options.threads);
+    if (const std::optional<FrameRange> range = chosenFrames(options.sequence)) return captureFrames(options, settings, *range);
+
+    OutputFolder folder(options.output);
+    const Scene scene = loadChosenScene(options);
+    SayOnce sayOnce;
+    const Captured captured = captureTo(folder, options, settings, scene, chosenCamera(scene, options), sayOnce);
+    folder.commit();
+
+    const std::size_t bytes = predictCaptureBytes(captured.capture.buffers);
     if (options.json)
-        std::cout << jsonText({{"folder", options.output}, {"predicted_bytes", predicted}, {"bytes", bytes}, {"buffers", capture.buffers.size()}});
+        std::cout << jsonText(
+            {{"folder", options.output}, {"predicted_bytes", captured.predictedBytes}, {"bytes", bytes}, {"buffers", captured.capture.buffers.size()}});
     else if (!options.quiet)
-        printSummary(capture, bytes, folder.path().string());
+        printSummary(captured.capture, bytes, folder.path().string());
     return 0;
 }
 
@@ -132,6 +175,7 @@ Command addCapture(CLI::App& program)
     addSettingOptions(*parser, *options);
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
+    addSequenceOptions(*parser, options->sequence);
     parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
     parser->add_option("--only", options->only, "passes whose buffers are kept: " + passNames())->delimiter(',')->allow_extra_args(false);
     parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");

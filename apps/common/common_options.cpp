@@ -1,7 +1,6 @@
 #include "apps/common/common_options.h"
 
 #include "core/base/errors.h"
-#include "core/scene/load_scene.h"
 #include "core/settings/settings_table.h"
 
 #include <charconv>
@@ -99,8 +98,17 @@ void addRunOptions(CLI::App& parser, CommonOptions& options)
 Scene loadChosenScene(const CommonOptions& options)
 {
     if (!std::isfinite(options.time)) throw InputError("--time", "must be a finite number of seconds");
-    Scene scene = loadScene(
-        options.scene, {.time = options.time, .animation = options.animation, .view = options.view, .camera = options.camera.empty() ? "0" : options.camera});
+    return poseChosenScene(openChosenScene(options), options, options.time);
+}
+
+SceneSource openChosenScene(const CommonOptions& options)
+{
+    return openScene(options.scene, {.animation = options.animation, .view = options.view, .camera = options.camera.empty() ? "0" : options.camera});
+}
+
+Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time)
+{
+    Scene scene = poseScene(source, time);
     forceReach(scene, options.bounds);
     return scene;
 }

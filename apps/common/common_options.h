@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene/scene.h"
+#include "core/scene/load_scene.h"
 #include "core/settings/settings.h"
 
 #include <CLI/CLI.hpp>
@@ -40,6 +40,9 @@ void addRunOptions(CLI::App& parser, CommonOptions& options);
 
 // Each throws InputError.
 Scene loadChosenScene(const CommonOptions& options);
+/// The same in two steps, for many moments: --time is not looked at.
+SceneSource openChosenScene(const CommonOptions& options);
+Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time);
 const Camera& chosenCamera(const Scene& scene, const CommonOptions& options);
 /// Preset, then file, then assignments in order; validated.
 Settings chosenSettings(const CommonOptions& options);

@@ -52,6 +52,9 @@ LayeredImage layersOf(const Frame& frame, const Scene& scene, const Json& json)
     addLayer(image, "position", worldPositions(scene, frame.gbuffer.position, frame.gbuffer.depthLinear));
     addLayer(image, "depth", frame.gbuffer.depthLinear, "Z");
     addLayer(image, "opacity", frame.opacity);
+    Image<float> object(frame.gbuffer.width, frame.gbuffer.height);  // exact below 2^24
+    std::copy(frame.gbuffer.objectId.texels.begin(), frame.gbuffer.objectId.texels.end(), object.texels.begin());
+    addLayer(image, "object", object);
     image.metadata = {{"lrsm:version", json["version"].get<std::string>()},
                       {"lrsm:command", "render"},
                       {"lrsm:scene", json["scene"]["name"].get<std::string>()},

@@ -234,4 +234,16 @@ void say(const std::vector<std::string>& messages)
     for (const std::string& message : messages) std::cerr << "lrsm: note: " << message << "\n";
 }
 
+void SayOnce::operator()(const std::vector<std::string>& messages)
+{
+    const std::vector<std::string> before = said_;  // of one call all are said
+    for (const std::string& message : messages) {
+        std::string kind = message;
+        std::erase_if(kind, [](char letter) { return (letter >= '0' && letter <= '9') || letter == '.'; });
+        if (std::find(before.begin(), before.end(), kind) != before.end()) continue;
+        said_.push_back(kind);
+        say({message});
+    }
+}
+
 }  // namespace lrsm

@@ -33,4 +33,13 @@ std::vector<std::string> darknessMessages(const Scene& scene, const SeenSurfaces
 /// "lrsm: note: ..." a line.
 void say(const std::vector<std::string>& messages);
 
+/// Says each kind of message once, for many pictures of one scene: what differs in its numbers alone is one kind.
+class SayOnce {
+  public:
+    void operator()(const std::vector<std::string>& messages);
+
+  private:
+    std::vector<std::string> said_;
+};
+
 }  // namespace lrsm

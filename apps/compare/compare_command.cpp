@@ -2,6 +2,7 @@
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
 #include "apps/compare/compare_layer.h"
+#include "apps/compare/compare_sequence.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/text.h"
@@ -24,7 +25,7 @@ struct CompareArguments {
     std::string test, reference, output, regions = "4x4", exposure = "auto", flipExposures = "auto";
     std::vector<std::string> layers, failAbove, failBelow;
     double pixelsPerDegree = kFlipPixelsPerDegree;
-    bool allowNan = false, allPixels = false, quiet = false, json = false;
+    bool sequence = false, allowNan = false, allPixels = false, quiet = false, json = false;
 };
 
 struct Side {
@@ -258,8 +259,24 @@ void writeResults(const CompareArguments& options, const Side& test, const Side&
     if (!options.quiet && !options.json) std::cout << folder.path().string() << ": report.html, compare.json, PNGs\n";
 }
 
+int compareFrames(const CompareArguments& options)
+{
+    if (!options.failBelow.empty()) throw InputError("--fail-below", "is of single pictures; a sequence's metrics are all better when smaller");
+    return compareSequences({.test = options.test,
+                             .reference = options.reference,
+                             .output = options.output,
+                             .layers = options.layers,
+                             .failAbove = options.failAbove,
+                             .exposureStops = parseExposure(options.exposure),
+                             .allPixels = options.allPixels,
+                             .allowNan = options.allowNan,
+                             .quiet = options.quiet,
+                             .json = options.json});
+}
+
 int runCompare(const CompareArguments& options)
 {
+    if (options.sequence) return compareFrames(options);
     const std::vector<Gate> gates = parseGates(options);
     if (!options.output.empty()) {
         const OutputFolder writable(options.output);
@@ -320,6 +337,10 @@ Command addCompare(CLI::App& program)
         ->add_option("--layer", options->layers,
                      "layer to compare, repeatable; RGB: the unnamed one; all: every one both have. By default irradiance, else combined, else RGB")
         ->allow_extra_args(false);
+    parser->add_flag("--sequence", options->sequence,
+                     "TEST and REFERENCE are folders of frames (render --frames): F, F_e, V, J, curves over time, worst frame; docs/sequences.md. --fail-above "
+                     "then takes f, "
+                     "fe, v and j");
     parser->add_option("--regions", options->regions, "COLUMNSxROWS of the table of regions")->capture_default_str();
     std::string metrics;
     for (const MetricInfo& metric : metricInfos()) metrics += "\n  " + metric.name + ": " + metric.meaning;

@@ -66,7 +66,7 @@ int runMerge(const MergeArguments& options)
             throw InputError(folder, "holds another picture than " + options.folders[0]);
         mergeSums(merged.state.sums, next.state.sums, folder.c_str());
         merged.state.rays += next.state.rays;
-        merged.state.invalidSamples += next.state.invalidSamples;
+        merged.state.faults += next.state.faults;
         addCounts(json, readFrameJson(folder), "rays");
     }
     const std::string ranges = describeRanges(merged.state.sums.ranges);
@@ -75,7 +75,8 @@ int runMerge(const MergeArguments& options)
 
     json["samples"] = merged.state.sums.sampleCount();
     json["sample_ranges"] = ranges;
-    json["not_finite_samples"] = merged.state.invalidSamples;
+    json["not_finite_samples"] = merged.state.faults.notFinite;
+    json["clamped_samples"] = merged.state.faults.clamped;
     json.erase("bare_loop");
     if (json.contains("rays") && json["rays"].value("seconds", 0.0) > 0.0)
         json["rays"]["million_per_second"] = json["rays"].value("total", 0.0) / json["rays"].value("seconds", 0.0) * 1e-6;

@@ -4,14 +4,16 @@
 #include "apps/common/interrupts.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
+#include "apps/common/sequence.h"
 #include "apps/reference/reference_files.h"
 #include "apps/reference/reference_run.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
-#include "core/scene/load_scene.h"
 #include "core/scene/scene_hash.h"
 
+#include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -24,6 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ReferenceArguments : CommonOptions {
+    SequenceArguments sequence;
     std::string output, samples, model = "single", exposure = "auto";
     std::uint64_t spp = 256, seed = 0;
     int block = 16;
@@ -70,12 +73,12 @@ void requireBeginning(const ReferenceState& state, const SampleRange& range, boo
 }
 
 /// The samples already in the folder, if there are any to go on from.
-std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, const Identity& identity, const SampleRange& range)
+std::optional<Checkpoint> earlierSamples(const std::string& folder, bool resume, bool toNoise, const Identity& identity, const SampleRange& range)
 {
-    const std::filesystem::path file = std::filesystem::path(options.output) / kSamplesFile;
+    const std::filesystem::path file = std::filesystem::path(folder) / kSamplesFile;
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return {};
-    if (!options.resume) {
+    if (!resume) {
         // Never throw hours away by a forgotten option; finished pictures may be replaced, as render does.
         Checkpoint found;
         try {
@@ -83,89 +86,139 @@ std::optional<Checkpoint> earlierSamples(const ReferenceArguments& options, cons
         } catch (const InputError&) {
             return {};
         }
-        if (!found.state.finished()) throw InputError(options.output, "holds an unfinished render; --resume continues it, or delete " + file.string());
+        if (!found.state.finished()) throw InputError(folder, "holds an unfinished render; --resume continues it, or delete " + file.string());
         return {};
     }
     Checkpoint found = decodeCheckpoint(readFile(file.string()), file.string());
     requireSameIdentity(identity, "this run", found.identity, file.string());
-    requireBeginning(found.state, range, options.targetNoise != 0.0, options.output);
+    requireBeginning(found.state, range, toNoise, folder);
     return found;
 }
 
-void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, std::uint64_t invalidSamples)
+void saySeen(const Scene& scene, const PrimaryHits& seen, const ReferenceFrame& picture, const SampleFaults& faults, SayOnce& sayOnce)
 {
-    if (invalidSamples > 0) say({std::to_string(invalidSamples) + " values were not finite and count as 0"});
+    if (faults.notFinite > 0) sayOnce({std::to_string(faults.notFinite) + " values were not finite and count as 0"});
+    if (faults.clamped > 0)
+        sayOnce({std::to_string(faults.clamped) + " values of paths were above 2^24 times the scene's unit of radiance and count as that: the picture is too "
+                                                  "dark where a path finds something that bright"});
     Image<Vec3> position(seen.depth.width, seen.depth.height), normal = position;
     for (std::size_t i = 0; i < position.texels.size(); ++i) {
         position.texels[i] = seen.surface.texels[i].position;
         normal.texels[i] = seen.surface.texels[i].geometricNormal;
     }
-    say(darknessMessages(scene, {position, normal, seen.depth}, seen.direct, picture.combined));
+    sayOnce(darknessMessages(scene, {position, normal, seen.depth}, seen.direct, picture.combined));
 }
 
-int runReference(const ReferenceArguments& options)
+/// What a picture is traced with, besides its scene.
+struct ReferencePlan {
+    const ReferenceArguments& arguments;
+    ReferenceSettings settings;
+    SampleRange range;
+    std::optional<float> exposure;
+};
+
+ReferencePlan planReference(const ReferenceArguments& arguments)
 {
-    if (options.output.empty()) throw InputError("reference", "needs -o FOLDER");
-    const ReferenceSettings settings = chosenReference(options);
-    const SampleRange range = chosenRange(options);
-    const bool toNoise = options.targetNoise != 0.0;
-    if (toNoise && !(options.targetNoise > 0.0 && options.targetNoise < 1.0))
-        throw InputError("--target-noise " + std::to_string(options.targetNoise), "must be above 0 and below 1: RMSE / mean of the irradiance, as 0.01");
-    if (!(options.checkpointSeconds >= 0.0)) throw InputError("--checkpoint-seconds", "must be 0 or more");
-    const std::optional<float> exposure = parseExposure(options.exposure);
-    {
-        const OutputFolder writable(options.output);
-    }  // fails now rather than after hours
+    if (arguments.output.empty()) throw InputError("reference", "needs -o FOLDER");
+    ReferencePlan plan{arguments, chosenReference(arguments), chosenRange(arguments), parseExposure(arguments.exposure)};
+    if (arguments.targetNoise != 0.0 && !(arguments.targetNoise > 0.0 && arguments.targetNoise < 1.0))
+        throw InputError("--target-noise " + std::to_string(arguments.targetNoise), "must be above 0 and below 1: RMSE / mean of the irradiance, as 0.01");
+    if (!(arguments.checkpointSeconds >= 0.0)) throw InputError("--checkpoint-seconds", "must be 0 or more");
+    return plan;
+}
 
-    const ThreadLimit threads(options.threads);
-    const Scene scene = loadChosenScene(options);
-    const Camera camera = chosenCamera(scene, options);
-    const std::string sceneHash = hashScene(scene);
+Json bareLoopJson(const PathTracer& tracer, double raysPerSecond)
+{
+    const BareLoop bare = tracer.timeBareLoop(std::max<std::size_t>(1, tracer.primary().covered.texels.size() / 65536));
+    const double rate = bare.seconds > 0.0 ? double(bare.rays) / bare.seconds : 0.0;
+    return {{"rays", bare.rays}, {"seconds", bare.seconds}, {"million_per_second", rate * 1e-6}, {"ratio", rate > 0.0 ? raysPerSecond / rate : 0.0}};
+}
 
-    say(loadMessages(scene));
-    Progress progress(options.quiet);
+struct Traced {
+    Json json;  ///< frame.json
+    double noise = 0.0;
+};
+
+/// One picture, from what `path` holds already (with `resume`) to its files in `folder`, which are not committed; nothing when it was interrupted: `path` then
+/// has what is done.
+std::optional<Traced> traceTo(OutputFolder& folder, const ReferencePlan& plan, const Scene& scene, const Camera& camera, const std::string& sceneHash,
+                              bool resume, const std::atomic<bool>& stop, SayOnce& sayOnce)
+{
+    const ReferenceArguments& arguments = plan.arguments;
+    const std::string path = folder.path().string();
+    sayOnce(loadMessages(scene));
+    Progress progress(arguments.quiet);
     progress.show("building the BVH", 0.0);
-    const PathTracer tracer(scene, camera, settings);
+    const PathTracer tracer(scene, camera, plan.settings);
     Checkpoint checkpoint{identifyReference(tracer, camera, sceneHash), tracer.unit(), {}};
-    std::optional<Checkpoint> earlier = earlierSamples(options, checkpoint.identity, range);
+    std::optional<Checkpoint> earlier = earlierSamples(path, resume, arguments.targetNoise != 0.0, checkpoint.identity, plan.range);
 
-    const CatchInterrupts catching;
-    const TraceOptions trace{.folder = options.output,
-                             .checkpointSeconds = options.checkpointSeconds,
+    const TraceOptions trace{.folder = path,
+                             .checkpointSeconds = arguments.checkpointSeconds,
                              .show = [&](const std::string& text, double fraction) { progress.show(text, fraction); },
-                             .stop = &catching.asked()};
-    ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(range);
-    const bool complete = toNoise ? traceToNoise(tracer, state, options.targetNoise, checkpoint, trace) : traceRange(tracer, state, range, checkpoint, trace);
+                             .stop = &stop};
+    ReferenceState state = earlier ? std::move(earlier->state) : tracer.start(plan.range);
+    const bool complete = arguments.targetNoise != 0.0 ? traceToNoise(tracer, state, arguments.targetNoise, checkpoint, trace)
+                                                       : traceRange(tracer, state, plan.range, checkpoint, trace);
     progress.clear();
-    if (!complete) {
-        std::cerr << "lrsm: interrupted; what is done is in " << options.output << " (--resume continues)" << std::endl;
-        return kInterruptedCode;
-    }
+    if (!complete) return {};
     const double seconds = state.seconds;
     checkpoint.state = std::move(state);
-    const RayCounts rays = checkpoint.state.rays;
-    Json json = referenceJson(scene, sceneHash, camera, tracer, checkpoint.state);
-    if (options.bareLoop) {
-        const BareLoop bare = tracer.timeBareLoop(std::max<std::size_t>(1, tracer.primary().covered.texels.size() / 65536));
-        const double rate = bare.seconds > 0.0 ? double(bare.rays) / bare.seconds : 0.0;
-        json["bare_loop"] = {{"rays", bare.rays},
-                             {"seconds", bare.seconds},
-                             {"million_per_second", rate * 1e-6},
-                             {"ratio", seconds > 0.0 && rate > 0.0 ? double(rays.total()) / seconds / rate : 0.0}};
-    }
-    OutputFolder folder(options.output);
-    const ReferenceFrame picture = writeReference(folder, checkpoint, seenLayers(scene, tracer.primary()), json, exposure);
-    folder.commit();
+    Traced traced{referenceJson(scene, sceneHash, camera, tracer, checkpoint.state), noiseOf(tracer, checkpoint.state.sums)};
+    if (arguments.bareLoop) traced.json["bare_loop"] = bareLoopJson(tracer, seconds > 0.0 ? double(checkpoint.state.rays.total()) / seconds : 0.0);
+    const ReferenceFrame picture = writeReference(folder, checkpoint, seenLayers(scene, tracer.primary()), traced.json, plan.exposure);
+    saySeen(scene, tracer.primary(), picture, checkpoint.state.faults, sayOnce);
+    return traced;
+}
 
-    saySeen(scene, tracer.primary(), picture, checkpoint.state.invalidSamples);
-    if (options.json)
+int traceFrames(const ReferencePlan& plan, const FrameRange& range)
+{
+    const ReferenceArguments& arguments = plan.arguments;
+    SayOnce sayOnce;
+    return runSequence({.range = range,
+                        .folder = arguments.output,
+                        .common = {{"command", "reference"},
+                                   {"size", {plan.settings.width, plan.settings.height}},
+                                   {"exposure", arguments.exposure},
+                                   {"samples", arguments.targetNoise != 0.0 ? "" : describeRanges({plan.range})},
+                                   {"target_noise", arguments.targetNoise},
+                                   {"settings", referenceSettingsJson(plan.settings)}},
+                        .mainFile = "image.exr",
+                        .quiet = arguments.quiet,
+                        .json = arguments.json,
+                        .make =
+                            [&](const SequenceFrame& frame, OutputFolder& folder) {
+                                return traceTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, true, frame.stop, sayOnce).has_value();
+                            }},
+                       arguments);
+}
+
+int runReference(const ReferenceArguments& arguments)
+{
+    const ReferencePlan plan = planReference(arguments);
+    const ThreadLimit threads(arguments.threads);
+    if (const std::optional<FrameRange> range = chosenFrames(arguments.sequence)) return traceFrames(plan, *range);
+
+    OutputFolder folder(arguments.output);  // fails now rather than after hours
+    const Scene scene = loadChosenScene(arguments);
+    const CatchInterrupts catching;
+    SayOnce sayOnce;
+    const std::optional<Traced> traced =
+        traceTo(folder, plan, scene, chosenCamera(scene, arguments), hashScene(scene), arguments.resume, catching.asked(), sayOnce);
+    if (!traced) {
+        std::cerr << "lrsm: interrupted; what is done is in " << arguments.output << " (--resume continues)" << std::endl;
+        return kInterruptedCode;
+    }
+    folder.commit();
+    const Json& json = traced->json;
+    if (arguments.json)
         std::cout << jsonText(json);
-    else if (!options.quiet) {
-        std::cout << "  " << checkpoint.state.sums.sampleCount() << " samples a pixel, " << options.model << ", " << double(rays.total()) * 1e-6
-                  << " million rays in " << seconds << " s: " << json["rays"]["million_per_second"].get<double>() << " million a second\n";
-        if (const double noise = noiseOf(tracer, checkpoint.state.sums); std::isfinite(noise))
-            std::cout << "  noise of the irradiance, RMSE / mean: " << noise << "\n";
-        if (options.bareLoop)
+    else if (!arguments.quiet) {
+        std::cout << "  " << json["samples"] << " samples a pixel, " << arguments.model << ", " << json["rays"]["total"].get<double>() * 1e-6
+                  << " million rays in " << json["rays"]["seconds"].get<double>() << " s: " << json["rays"]["million_per_second"].get<double>()
+                  << " million a second\n";
+        if (std::isfinite(traced->noise)) std::cout << "  noise of the irradiance, RMSE / mean: " << traced->noise << "\n";
+        if (arguments.bareLoop)
             std::cout << "  bare loop over the same kind of rays: " << json["bare_loop"]["million_per_second"].get<double>() << " million a second; ratio "
                       << json["bare_loop"]["ratio"].get<double>() << "\n";
         std::cout << folder.path().string() << ": image.exr, PNGs, frame.json, samples.bin\n";
@@ -182,6 +235,7 @@ Command addReference(CLI::App& program)
     addSceneOptions(*parser, *options);
     addPictureOptions(*parser, *options);
     addRunOptions(*parser, *options);
+    addSequenceOptions(*parser, options->sequence);
     parser->add_option("-o,--output", options->output, "folder for the results");
     CLI::Option* spp =
         parser->add_option("--spp", options->spp, "samples a pixel: the range 0:N; for a known time, and for ranges to be merged")->capture_default_str();

@@ -145,22 +145,28 @@ bool traceToNoise(const PathTracer& tracer, ReferenceState& state, double target
     }
 }
 
+Json referenceSettingsJson(const ReferenceSettings& settings)
+{
+    return {{"model", modelName(settings.transport)},
+            {"seed", settings.seed},
+            {"block", 1 << settings.blockBits},
+            {"from_lights", settings.fromLights},
+            {"specular_aperture_degrees", settings.specularApertureDegrees}};
+}
+
 Json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer, const ReferenceState& state)
 {
     const ReferenceSettings& settings = tracer.settings();
     Json json = {{"program", "lrsm"}, {"version", LRSM_VERSION}, {"command", "reference"}, {"size", {settings.width, settings.height}}};
     json["samples"] = state.sums.sampleCount();
     json["sample_ranges"] = describeRanges(state.sums.ranges);
-    json["settings"] = {{"model", modelName(settings.transport)},
-                        {"seed", settings.seed},
-                        {"block", 1 << settings.blockBits},
-                        {"from_lights", settings.fromLights},
-                        {"specular_aperture_degrees", settings.specularApertureDegrees}};
+    json["settings"] = referenceSettingsJson(settings);
     json["scene"] = sceneJson(scene, sceneHash);
     json["camera"] = cameraJson(camera);
     json["primary_rays"] = {{"eye", tracer.primaryRays().eye}, {"light", tracer.primaryRays().light}};
     json["rays"] = speedJson(state.rays, state.seconds);
-    json["not_finite_samples"] = state.invalidSamples;
+    json["not_finite_samples"] = state.faults.notFinite;
+    json["clamped_samples"] = state.faults.clamped;
     return json;
 }
 

@@ -32,6 +32,9 @@ double noiseOf(const PathTracer& tracer, const SampleSums& sums);
 /// alone, not on time, threads or interruptions. False when stopped.
 bool traceToNoise(const PathTracer& tracer, ReferenceState& state, double target, Checkpoint& checkpoint, const TraceOptions& options);
 
+/// All but the size.
+nlohmann::ordered_json referenceSettingsJson(const ReferenceSettings& settings);
+
 /// frame.json of a finished reference.
 nlohmann::ordered_json referenceJson(const Scene& scene, const std::string& sceneHash, const Camera& camera, const PathTracer& tracer,
                                      const ReferenceState& state);

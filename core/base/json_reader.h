@@ -87,6 +87,9 @@ class JsonReader {
             if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail("unknown key " + Json(key).dump() + "; known: " + joined(keys));
     }
 
+    /// Another value in this one's place; `note` follows the place. `value` must outlive the reader.
+    JsonReader of(const Json& value, const std::string& note) const { return {value, path_ + note, note.empty() ? toKey_ : ": ", separator_}; }
+
     std::vector<JsonReader> items() const
     {
         if (!value_->is_array()) fail("must be a list");

@@ -29,6 +29,8 @@ class OutputFolder {
     void commit();
 
     const std::filesystem::path& path() const { return target_; }
+    /// Where a file that was written lies until commit.
+    std::filesystem::path staged(const std::string& name) const { return files_ / name; }
 
   private:
     void makeStaging();

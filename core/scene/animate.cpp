@@ -111,7 +111,7 @@ void sampleChannel(const Channel& channel, float time, std::span<double> value)
     if (rotation) normalize(value);
 }
 
-Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin)
+Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin, const std::optional<DMat4>& placement)
 {
     Pose pose;
     std::vector<LocalTransform> locals;
@@ -127,6 +127,7 @@ Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origi
     for (const int i : asset.parentsFirst) {
         const Node& node = asset.nodes[std::size_t(i)];
         DMat4 local = node.hasMatrix ? node.matrix : compose(locals[std::size_t(i)]);
+        if (node.parent < 0 && placement) local = *placement * local;
         if (node.parent < 0) local[3] -= glm::dvec4(origin, 0.0);
         pose.worldFromNode[std::size_t(i)] = node.parent < 0 ? local : pose.worldFromNode[std::size_t(node.parent)] * local;
     }

@@ -2,6 +2,7 @@
 
 #include "core/scene/gltf_asset.h"
 
+#include <optional>
 #include <span>
 
 /// Node transforms and morph weights of a glTF asset at a moment (glTF 2.0, section 3.11 and appendix C).
@@ -12,9 +13,10 @@ struct Pose {
     std::vector<std::vector<float>> weights;  ///< morph weights, one list a node; empty where the node has no targets
 };
 
-/// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds. `origin`, in metres, is subtracted from the roots' places, so that
-/// everything below comes out relative to it before anything is rounded to float.
-Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin = DVec3(0.0));
+/// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds. `placement`, where there is one, goes over the roots: where a whole
+/// file is put in a world. `origin`, in metres, is subtracted from the roots' places after it, so that everything below comes out relative to it before
+/// anything is rounded to float.
+Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin = DVec3(0.0), const std::optional<DMat4>& placement = {});
 
 /// A channel's value at `time`, clamped to its first and last keyframe: channel.width numbers into `value`. STEP holds, LINEAR
 /// interpolates (rotations along the shorter great arc), CUBICSPLINE is Hermite's; a rotation comes out with unit length.

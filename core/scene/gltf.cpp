@@ -1,5 +1,6 @@
 #include "core/scene/gltf.h"
 
+#include "core/base/elementary.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/scene/defaults.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 namespace lrsm {
@@ -64,15 +66,26 @@ Image<Rgba8> decode(const Asset& asset, std::size_t index)
     return toRgba8(decoded);
 }
 
-/// Decodes what a triangle's material refers to, each image once, in parallel.
-void decodeTextures(const Asset& asset, Scene& scene)
+/// Textures that a triangle's material refers to, in order.
+std::vector<int> usedTextures(const Asset& asset)
 {
     std::set<int> textures;
-    for (const lrsm::Mesh& mesh : scene.meshes) {
-        const Material& material = scene.materials[std::size_t(mesh.material)];
-        for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture})
-            if (*use) textures.insert(use->texture);
+    for (const int n : asset.sceneNodes) {
+        if (asset.nodes[std::size_t(n)].mesh < 0) continue;
+        for (const Primitive& primitive : asset.meshes[std::size_t(asset.nodes[std::size_t(n)].mesh)].primitives) {
+            if (primitive.triangles.empty()) continue;
+            const Material& material = asset.materials[std::size_t(primitive.material)];
+            for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture})
+                if (*use) textures.insert(use->texture);
+        }
     }
+    return {textures.begin(), textures.end()};
+}
+
+/// Each image once, in parallel; then their mips. What was encoded goes.
+void decodeTextures(Asset& asset)
+{
+    const std::vector<int> textures = usedTextures(asset);
     std::set<int> unique;
     for (const int texture : textures) unique.insert(asset.textureImage[std::size_t(texture)]);
     const std::vector<int> indices(unique.begin(), unique.end());
@@ -93,8 +106,10 @@ void decodeTextures(const Asset& asset, Scene& scene)
         if (!error.empty()) throw InputError(error);
     for (const int texture : textures) {
         const auto found = std::lower_bound(indices.begin(), indices.end(), asset.textureImage[std::size_t(texture)]);
-        scene.textures[std::size_t(texture)].image = images[std::size_t(found - indices.begin())];
+        asset.textures[std::size_t(texture)].image = images[std::size_t(found - indices.begin())];
     }
+    asset.images.clear();
+    buildMipChains(asset.textures, asset.materials);
 }
 
 void checkOptions(const Asset& asset, const LoadOptions& options)
@@ -195,6 +210,21 @@ void noteLostDigits(const Asset& asset, const LoadOptions& options, Scene& scene
     scene.notes.emplace_back(text);
 }
 
+std::string fileName(const Asset& asset)
+{
+    return std::filesystem::path(asset.file).filename().string();
+}
+
+/// Move, turn, scale: read from the right.
+DMat4 worldFromFile(const Placement& placement)
+{
+    constexpr double kDegree = 0.017453292519943295;
+    // A whole turn more is the same place, to the bit.
+    const SinCos yaw = sinCos((placement.yawDegrees - 360.0 * std::floor(placement.yawDegrees / 360.0)) * kDegree);
+    const double c = placement.scale * yaw.cos, s = placement.scale * yaw.sin;
+    return DMat4(glm::dvec4(c, 0.0, -s, 0.0), glm::dvec4(0.0, placement.scale, 0.0, 0.0), glm::dvec4(s, 0.0, c, 0.0), glm::dvec4(placement.position, 1.0));
+}
+
 void noteInvisible(Scene& scene)
 {
     std::size_t triangles = 0;
@@ -205,23 +235,67 @@ void noteInvisible(Scene& scene)
 }  // namespace
 }  // namespace gltf
 
-Scene loadGltf(const std::string& path, const LoadOptions& options)
+GltfFile openGltf(const std::string& path)
 {
-    const gltf::Asset asset = gltf::readAsset(path);
+    auto asset = std::make_shared<gltf::Asset>(gltf::readAsset(path));
+    gltf::checkSize(*asset);
+    gltf::decodeTextures(*asset);
+    return asset;
+}
+
+Scene poseGltf(const gltf::Asset& asset, const LoadOptions& options)
+{
     gltf::checkOptions(asset, options);
-    gltf::checkSize(asset);
     Scene scene = gltf::posed(asset, options, glm::dvec3(0.0));
     const glm::dvec3 origin = chooseOrigin(scene, gltf::eyeOf(scene, options));
     if (origin != glm::dvec3(0.0)) {
         scene = gltf::posed(asset, options, origin);
         gltf::noteLostDigits(asset, options, scene);
     }
-    scene.name = std::filesystem::path(path).filename().string();
-    gltf::checkHasArea(scene, path);
-    gltf::decodeTextures(asset, scene);
-    buildMipChains(scene);
+    scene.name = gltf::fileName(asset);
+    gltf::checkHasArea(scene, asset.file);
     gltf::noteInvisible(scene);
     return scene;
+}
+
+double lengthOfAnimation(const gltf::Asset& asset, int animation)
+{
+    double end = 0.0;
+    if (animation >= 0 && std::size_t(animation) < asset.animations.size())
+        for (const gltf::Channel& channel : asset.animations[std::size_t(animation)].channels) end = std::max(end, double(channel.times.back()));
+    return end;
+}
+
+Scene loadGltf(const std::string& path, const LoadOptions& options)
+{
+    return poseGltf(*openGltf(path), options);
+}
+
+std::size_t addPlaced(Scene& scene, const gltf::Asset& asset, const Placement& placement, float time)
+{
+    gltf::checkOptions(asset, {.time = time, .animation = placement.animation});
+    const int animation = asset.animations.empty() ? -1 : placement.animation;
+    Scene placed = gltf::poseAsset(asset, gltf::poseNodes(asset, animation, time, scene.origin, gltf::worldFromFile(placement)));
+    if (placed.triangleCount() == 0) throw InputError(asset.file, "the scene has no triangles");
+    placed.notes = asset.notes;  // without those of its lights
+    gltf::noteInvisible(placed);
+    if (!placed.lights.empty() || !placed.cameras.empty()) placed.notes.emplace_back("its lights and cameras are left out");
+
+    const std::size_t firstMaterial = scene.materials.size(), firstTexture = scene.textures.size();
+    for (Material& material : placed.materials)
+        for (TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture})
+            if (*use) use->texture += int(firstTexture);
+    for (Mesh& mesh : placed.meshes) mesh.material += int(firstMaterial);
+    const auto append = [](auto& to, auto& from) { to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end())); };
+    append(scene.meshes, placed.meshes);
+    append(scene.materials, placed.materials);
+    append(scene.textures, placed.textures);
+    scene.bounds.include(placed.bounds);
+    for (const std::string& text : placed.notes) {
+        const std::string note = "object " + gltf::fileName(asset) + ": " + text;
+        if (std::find(scene.notes.begin(), scene.notes.end(), note) == scene.notes.end()) scene.notes.push_back(note);  // several of one file
+    }
+    return firstMaterial;
 }
 
 const Camera& findCamera(const Scene& scene, const std::string& nameOrIndex)

@@ -2,6 +2,7 @@
 
 #include "core/scene/scene.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -19,11 +20,38 @@ struct LoadOptions {
     std::optional<Camera> eye = {};  ///< one that is not in the file, in its place; world space
 };
 
-/// Throws InputError "FILE: JSON path: why" for a file that is no valid glTF, that requires an extension unknown here, or that has
-/// no triangle of positive area. A scene without lights or camera gets default ones (defaults.h). Textures are decoded only where a
-/// triangle's material uses them. A scene far from 0 gets an origin (Scene::origin): it is subtracted in double, once. The result does not depend on the number
-/// of threads.
+namespace gltf {
+struct Asset;
+}
+/// A file as it was read, to be posed at any moment: all of it but the pose, textures with their mips.
+using GltfFile = std::shared_ptr<const gltf::Asset>;
+
+/// Throws InputError "FILE: JSON path: why" for a file that is no valid glTF or that requires an extension unknown here. Textures are decoded only where a
+/// triangle's material uses them.
+GltfFile openGltf(const std::string& path);
+
+/// The scene at a moment; equal, to the bit, however often and at what other times the file was posed before. Throws InputError where no triangle has an area.
+/// A scene without lights or camera gets default ones (defaults.h). A scene far from 0 gets an origin (Scene::origin): it is subtracted in double, once. The
+/// result does not depend on the number of threads.
+Scene poseGltf(const gltf::Asset& file, const LoadOptions& options);
+
+/// The last keyframe of an animation, seconds; 0 where there is no such one.
+double lengthOfAnimation(const gltf::Asset& file, int animation);
+
+/// Both.
 Scene loadGltf(const std::string& path, const LoadOptions& options);
+
+/// A file put into a scene among other things: what of it is posed and where.
+struct Placement {
+    int animation = 0;         ///< as LoadOptions's
+    glm::dvec3 position{0.0};  ///< of the file's 0, in the scene file's world, metres
+    double yawDegrees = 0.0;   ///< about +Y, counter-clockwise seen from above
+    double scale = 1.0;        ///< before turning and moving; above 0
+};
+
+/// Adds the file's meshes, materials and textures to `scene`, at `time`, counted from Scene::origin; returns the first of its materials, which end with
+/// Scene::materials. Its lights and cameras stay out, and a note says so. Throws InputError as poseGltf.
+std::size_t addPlaced(Scene& scene, const gltf::Asset& file, const Placement& placement, float time);
 
 /// The camera of that name, else of that index ("0" the first). InputError lists the ones there are.
 const Camera& findCamera(const Scene& scene, const std::string& nameOrIndex);

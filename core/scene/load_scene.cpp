@@ -7,7 +7,6 @@
 #include "core/scene/check_scene.h"
 #include "core/scene/defaults.h"
 #include "core/scene/reach.h"
-#include "core/scene/view_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -30,22 +29,55 @@ std::string lowerCaseExtension(const std::string& path)
 }
 
 /// A built-in or a glTF file; `place` is where its name was given.
-Scene loadPlain(const std::string& scene, const SceneOptions& options, const std::optional<Camera>& eye, const std::string& place)
+void openPlain(SceneSource& source, const std::string& scene, const std::string& place)
 {
-    if (std::optional<Scene> builtin = makeBuiltinScene(scene)) return std::move(*builtin);
+    source.builtin = makeBuiltinScene(scene);
+    if (source.builtin) return;
     std::error_code error;
     if (scene.empty() || !std::filesystem::exists(scene, error)) failUnknown(place);
-    return loadGltf(scene, {.time = options.time, .animation = options.animation, .camera = options.camera, .eye = eye});
+    source.file = openGltf(scene);
 }
 
-/// Beside the view file; else in the folder above, where views have a folder of their own among the scenes.
-std::string sceneOfView(const std::string& scene, const std::string& viewPath)
+/// Beside the view file; else in the folder above, where views have a folder of their own among the scenes; else beside `scene`.
+std::string fileOfView(const std::string& file, const std::string& viewPath, const std::string& scene = "")
 {
-    if (makeBuiltinScene(scene)) return scene;
     const std::filesystem::path folder = std::filesystem::path(viewPath).parent_path();
-    const std::filesystem::path beside = folder / scene, above = folder / ".." / scene;
     std::error_code error;
-    return (!std::filesystem::exists(beside, error) && std::filesystem::exists(above, error) ? above : beside).string();
+    for (const std::filesystem::path& candidate : {folder / file, folder / ".." / file, std::filesystem::path(scene).parent_path() / file})
+        if (std::filesystem::exists(candidate, error)) return candidate.string();
+    return (folder / file).string();
+}
+
+void openObjects(SceneSource& source, const std::string& scene)
+{
+    const std::vector<ViewObject> objects = viewAt(*source.view, 0.0).objects;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const std::string place = source.view->path + ": objects[" + std::to_string(i) + "].scene";
+        const auto same = std::find_if(objects.begin(), objects.begin() + std::ptrdiff_t(i), [&](const ViewObject& o) { return o.scene == objects[i].scene; });
+        if (same != objects.begin() + std::ptrdiff_t(i)) {
+            source.objects.push_back(source.objects[std::size_t(same - objects.begin())]);
+            continue;
+        }
+        const std::string extension = lowerCaseExtension(objects[i].scene), path = fileOfView(objects[i].scene, source.view->path, scene);
+        if (extension != ".glb" && extension != ".gltf") throw InputError(place, "\"" + objects[i].scene + "\" must be a .gltf or .glb file");
+        std::error_code error;
+        if (!std::filesystem::exists(path, error)) throw InputError(place, "there is no file \"" + path + "\"");
+        source.objects.push_back(openGltf(path));
+    }
+}
+
+void openWithView(SceneSource& source, const std::string& scene, const std::string& viewPath)
+{
+    source.view = openViewFile(viewPath);
+    std::string target = scene;
+    if (target.empty()) {
+        target = viewAt(*source.view, 0.0).scene;
+        if (target.empty()) throw InputError(viewPath + ": scene", "is missing");
+        if (!makeBuiltinScene(target)) target = fileOfView(target, viewPath);
+    }
+    if (lowerCaseExtension(target) == ".json") throw InputError(viewPath + ": scene", "must not be a view file itself");
+    openPlain(source, target, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
+    openObjects(source, target);
 }
 
 /// For what the camera reaches, as far as depths over the whole scene can still be told apart.
@@ -55,21 +87,29 @@ float nearPlaneIn(const Scene& scene, const Camera& camera)
     return std::max(nearPlaneFor(camera, measureReach(scene, camera)), float(1.01 / kMaxDepthRatio) * glm::length(far));
 }
 
-Scene loadWithView(const std::string& scene, const std::string& viewPath, const SceneOptions& options)
+void addObjects(Scene& scene, const SceneSource& source, const View& view, float time)
 {
-    View view = readViewFile(viewPath);
-    std::string target = scene;
-    if (target.empty()) {
-        if (view.scene.empty()) throw InputError(viewPath + ": scene", "is missing");
-        target = sceneOfView(view.scene, viewPath);
+    for (std::size_t i = 0; i < view.objects.size(); ++i) {
+        const std::size_t first = addPlaced(scene, *source.objects[i], view.objects[i].placement, time);
+        for (std::size_t m = first; m < scene.materials.size(); ++m) changeMaterial(scene.materials[m], view.objects[i].material);
     }
-    if (lowerCaseExtension(target) == ".json") throw InputError(viewPath + ": scene", "must not be a view file itself");
+}
 
-    Scene result = loadPlain(target, options, view.camera, (scene.empty() ? viewPath + ": " : "") + "scene \"" + target + "\"");
-    if (result.origin != glm::dvec3(0.0)) view = readViewFile(viewPath, result.origin);
+Scene posePlain(const SceneSource& source, float time, const std::optional<Camera>& eye)
+{
+    if (source.builtin) return *source.builtin;
+    return poseGltf(*source.file, {.time = time, .animation = source.options.animation, .camera = source.options.camera, .eye = eye});
+}
+
+Scene poseWithView(const SceneSource& source, float time)
+{
+    View view = viewAt(*source.view, double(time));
+    Scene result = posePlain(source, time, view.camera);
+    if (result.origin != glm::dvec3(0.0)) view = viewAt(*source.view, double(time), result.origin);
+    changeMaterials(result, view.materials, source.view->path);
+    addObjects(result, source, view, time);
     if (view.camera) result.cameras = {*view.camera};
     if (view.lights) result.lights = std::move(*view.lights);
-    changeMaterials(result, view.materials, viewPath);
     if (view.camera) result.cameras[0].nearPlane = nearPlaneIn(result, result.cameras[0]);
     // What was said about defaults no longer holds where the view replaced them.
     std::erase_if(result.notes,
@@ -78,21 +118,47 @@ Scene loadWithView(const std::string& scene, const std::string& viewPath, const 
     return result;
 }
 
-Scene loadAny(const std::string& scene, const SceneOptions& options)
+}  // namespace
+
+SceneSource openScene(const std::string& scene, const SceneOptions& options)
 {
-    if (!options.view.empty()) return loadWithView(scene, options.view, options);
-    if (lowerCaseExtension(scene) == ".json") return loadWithView("", scene, options);
-    return loadPlain(scene, options, {}, "scene \"" + scene + "\"");
+    const FloatState state;
+    SceneSource source{.options = options, .builtin = {}, .file = {}, .view = {}};
+    if (!options.view.empty())
+        openWithView(source, scene, options.view);
+    else if (lowerCaseExtension(scene) == ".json")
+        openWithView(source, "", scene);
+    else
+        openPlain(source, scene, "scene \"" + scene + "\"");
+    return source;
 }
 
-}  // namespace
+Scene poseScene(const SceneSource& source, float time)
+{
+    const FloatState state;
+    Scene posed = source.view ? poseWithView(source, time) : posePlain(source, time, {});
+    posed.reach = measureReach(posed, findCamera(posed, source.options.camera));
+    return posed;
+}
+
+double endOfMotion(const SceneSource& source)
+{
+    double end = source.view && !source.view->keyTimes.empty() ? std::max(source.view->keyTimes.back(), 0.0) : 0.0;
+    if (source.file) end = std::max(end, lengthOfAnimation(*source.file, source.options.animation));
+    if (source.objects.empty()) return end;
+    const std::vector<ViewObject> objects = viewAt(*source.view, 0.0).objects;
+    for (std::size_t i = 0; i < objects.size(); ++i) end = std::max(end, lengthOfAnimation(*source.objects[i], objects[i].placement.animation));
+    return end;
+}
+
+void checkMoment(const SceneSource& source, float time)
+{
+    if (source.view) viewAt(*source.view, double(time));
+}
 
 Scene loadScene(const std::string& scene, const SceneOptions& options)
 {
-    const FloatState state;
-    Scene loaded = loadAny(scene, options);
-    loaded.reach = measureReach(loaded, findCamera(loaded, options.camera));
-    return loaded;
+    return poseScene(openScene(scene, options), options.time);
 }
 
 }  // namespace lrsm

@@ -101,13 +101,13 @@ Image<Rgba8> halveTexture(const Image<Rgba8>& level, TexelMeaning meaning)
     return next;
 }
 
-void buildMipChains(Scene& scene)
+void buildMipChains(std::vector<Texture>& textures, const std::vector<Material>& materials)
 {
     std::vector<std::pair<std::size_t, TexelMeaning>> wanted;
     const auto want = [&](const TextureUse& use, TexelMeaning meaning) {
         if (use) wanted.push_back({std::size_t(use.texture), meaning});
     };
-    for (const Material& material : scene.materials) {
+    for (const Material& material : materials) {
         want(material.baseColorTexture, TexelMeaning::color);
         want(material.metallicRoughnessTexture, TexelMeaning::data);
         want(material.normalTexture, TexelMeaning::data);
@@ -115,7 +115,7 @@ void buildMipChains(Scene& scene)
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     parallelFor(wanted.size(), 1, [&](std::size_t i, std::size_t) {
-        Texture& texture = scene.textures[wanted[i].first];
+        Texture& texture = textures[wanted[i].first];
         (wanted[i].second == TexelMeaning::color ? texture.colorMips : texture.dataMips) = chainOf(texture.image, wanted[i].second);
     });
 }

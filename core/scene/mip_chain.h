@@ -11,7 +11,7 @@ enum class TexelMeaning { color, data };  ///< sRGB, averaged in linear light; o
 /// Normal maps become shorter where they vary; the lookup makes them unit again.
 Image<Rgba8> halveTexture(const Image<Rgba8>& level, TexelMeaning meaning);
 
-/// Chains of all textures, as the scene's materials use them. Parallel; the same bits everywhere.
-void buildMipChains(Scene& scene);
+/// Chains of all textures, as the materials use them. Parallel; the same bits everywhere.
+void buildMipChains(std::vector<Texture>& textures, const std::vector<Material>& materials);
 
 }  // namespace lrsm

@@ -6,6 +6,9 @@
 #include "core/base/text.h"
 #include "core/scene/defaults.h"
 #include "core/scene/light.h"
+#include "core/scene/view_keys.h"
+
+#include <algorithm>
 
 namespace lrsm {
 namespace {
@@ -105,11 +108,10 @@ void addLight(const JsonReader& in, const glm::dvec3& origin, View& view)
     view.lights->push_back(light);
 }
 
-MaterialChange readMaterial(const JsonReader& in)
+/// What is changed, without the name.
+MaterialChange readChange(const JsonReader& in)
 {
-    in.allowOnly({"name", "roughness", "metallic", "baseColor"});
     MaterialChange change;
-    change.name = in["name"].text();
     if (in.has("roughness")) change.roughness = numberOr(0.0f, in, "roughness", 0.0, 1.0);
     if (in.has("metallic")) change.metallic = numberOr(0.0f, in, "metallic", 0.0, 1.0);
     if (!in.has("baseColor")) return change;
@@ -119,25 +121,71 @@ MaterialChange readMaterial(const JsonReader& in)
     return change;
 }
 
+MaterialChange readMaterial(const JsonReader& in)
+{
+    in.allowOnly({"name", "roughness", "metallic", "baseColor"});
+    MaterialChange change = readChange(in);
+    change.name = in["name"].text();
+    return change;
+}
+
+ViewObject readObject(const JsonReader& in)
+{
+    in.allowOnly({"scene", "animation", "material", "position", "yaw", "scale"});
+    ViewObject object;
+    object.scene = in["scene"].text();
+    if (object.scene.empty()) in.fail("scene", "is empty");
+    if (in.has("animation")) object.placement.animation = int(in["animation"].whole(-1, 1 << 20));
+    if (in.has("material")) {
+        in["material"].allowOnly({"roughness", "metallic", "baseColor"});
+        object.material = readChange(in["material"]);
+    }
+    if (in.has("position")) {
+        vectorOf(in["position"]);  // refuses what is none
+        const auto xyz = in["position"].items();
+        for (int c = 0; c < 3; ++c) object.placement.position[c] = xyz[std::size_t(c)].number();
+    }
+    if (in.has("yaw")) object.placement.yawDegrees = in["yaw"].number(-1e6, 1e6);
+    if (in.has("scale")) object.placement.scale = in["scale"].number(1e-9, 1e9);
+    return object;
+}
+
+/// What of each may have keys.
+const KeyedNames kCameraNames = {"eye", "target", "up", "verticalFovDegrees"}, kObjectNames = {"position", "yaw", "scale"},
+                 kLightNames = {"direction", "position", "target", "color", "intensity", "range", "innerConeAngleDegrees", "outerConeAngleDegrees"};
+
+/// Calls visit(reader, names) of everything that may have keys.
+template <class Visit>
+void forEachKeyed(const JsonReader& in, const Visit& visit)
+{
+    if (in.has("camera")) visit(in["camera"], kCameraNames);
+    if (in.has("lights"))
+        for (const JsonReader& light : in["lights"].items()) visit(light, kLightNames);
+    if (in.has("objects"))
+        for (const JsonReader& object : in["objects"].items()) visit(object, kObjectNames);
+}
+
 }  // namespace
 
-View parseView(const std::string& text, const std::string& file, const glm::dvec3& origin)
+View parseView(const std::string& text, const std::string& file, const glm::dvec3& origin, double time)
 {
     const JsonReader::Json json = parseJson(text, file);
     const JsonReader in(json, file);
-    in.allowOnly({"scene", "camera", "lights", "materials"});
+    in.allowOnly({"scene", "camera", "lights", "materials", "objects"});
 
     View view;
     view.scene = textOr("", in, "scene");
     if (in.has("scene") && view.scene.empty()) in.fail("scene", "is empty");
-    if (in.has("camera")) view.camera = readCamera(in["camera"], origin);
+    if (in.has("camera")) view.camera = readCamera(Moment(in["camera"], kCameraNames, time).reader(), origin);
     if (in.has("lights")) {
         if (!json["lights"].is_array() || json["lights"].empty()) in.fail("lights", "must be an array of at least one light");
         view.lights.emplace();
-        for (const JsonReader& light : in["lights"].items()) addLight(light, origin, view);
+        for (const JsonReader& light : in["lights"].items()) addLight(Moment(light, kLightNames, time).reader(), origin, view);
     }
     if (in.has("materials"))
         for (const JsonReader& material : in["materials"].items()) view.materials.push_back(readMaterial(material));
+    if (in.has("objects"))
+        for (const JsonReader& object : in["objects"].items()) view.objects.push_back(readObject(Moment(object, kObjectNames, time).reader()));
     return view;
 }
 
@@ -148,23 +196,44 @@ void changeMaterials(Scene& scene, const std::vector<MaterialChange>& changes, c
         for (Material& material : scene.materials) {
             if (material.name != change.name) continue;
             found = true;
-            // The texture holds roughness and metallic: the one that is not given keeps its factor alone.
-            if (change.roughness || change.metallic) material.metallicRoughnessTexture = {};
-            if (change.roughness) material.roughness = *change.roughness;
-            if (change.metallic) material.metallic = *change.metallic;
-            if (!change.baseColor) continue;
-            material.baseColor = Vec4(*change.baseColor, material.baseColor.a);
-            if (!material.alphaMask) material.baseColorTexture = {};
+            changeMaterial(material, change);
         }
         if (!found)
             throw InputError(place + ": materials", "the scene has no material \"" + change.name + "\"; it has " + joined(scene.materials, &Material::name));
     }
 }
 
-View readViewFile(const std::string& path, const glm::dvec3& origin)
+void changeMaterial(Material& material, const MaterialChange& change)
+{
+    // The texture holds roughness and metallic: the one that is not given keeps its factor alone.
+    if (change.roughness || change.metallic) material.metallicRoughnessTexture = {};
+    if (change.roughness) material.roughness = *change.roughness;
+    if (change.metallic) material.metallic = *change.metallic;
+    if (!change.baseColor) return;
+    material.baseColor = Vec4(*change.baseColor, material.baseColor.a);
+    if (!material.alphaMask) material.baseColorTexture = {};
+}
+
+ViewFile openViewFile(const std::string& path)
 {
     const std::vector<unsigned char> bytes = readFile(path);
-    return parseView(std::string(bytes.begin(), bytes.end()), path, origin);
+    ViewFile file{path, std::string(bytes.begin(), bytes.end()), {}};
+    const JsonReader::Json json = parseJson(file.text, path);
+    forEachKeyed(JsonReader(json, path), [&](const JsonReader& item, const KeyedNames& names) {
+        const std::vector<double> times = keyTimesOf(item, names);
+        file.keyTimes.insert(file.keyTimes.end(), times.begin(), times.end());
+    });
+    std::sort(file.keyTimes.begin(), file.keyTimes.end());
+    file.keyTimes.erase(std::unique(file.keyTimes.begin(), file.keyTimes.end()), file.keyTimes.end());
+
+    viewAt(file, 0.0);
+    for (const double time : file.keyTimes) viewAt(file, time);
+    return file;
+}
+
+View viewAt(const ViewFile& file, double time, const glm::dvec3& origin)
+{
+    return parseView(file.text, file.path, origin, time);
 }
 
 }  // namespace lrsm

@@ -38,11 +38,19 @@ struct VoxelSettings {
     bool operator==(const VoxelSettings&) const = default;
 };
 
+/// Of a sun's map, what keeps its texels where they are while things move.
+enum class RsmSnap {
+    texel,   ///< as wide as what it is fitted to, its centre on a whole texel of the light's lattice, which stands in the world
+    sphere,  ///< that, and as wide as the fitted box's diagonal, rounded up: the texels' size hangs on no direction, and on the box's size in steps
+    none,    ///< fitted as closely as it goes: texels slide and stretch with the box
+};
+
 struct RsmSettings {
     int resolution = 1024;  ///< texels along an edge, power of two, 2..8192
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
     Extent extent = Extent::reach;
+    RsmSnap snap = RsmSnap::texel;
     bool operator==(const RsmSettings&) const = default;
 };
 
@@ -111,6 +119,7 @@ struct ConeSetSettings {
     Rotation rotation = Rotation::strata;
     bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
     int filterPasses = 2;  ///< wider passes after it (none without it), each twice as wide as the last, 0..3; less where walls are near
+    int gatherDivisor = 1;  ///< one pixel in a block of so many each way is gathered for, and lends the others its light, 1..4, power of two
     int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
     /// Those that run.
     int smoothingPasses() const { return filter ? filterPasses : 0; }

@@ -166,6 +166,11 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(
         choice<&R::halfRounding>({"rsm_half_rounding", "", "float to half: toward zero (D3D11) or to nearest even", "D3D11.3 spec 3.2.2: d3d"}, rounding));
     rows.push_back(choice<&R::extent>({"rsm_extent", "", "a light's map over the same reach, or over the whole scene", "ours; paper: scene"}, extent));
+    rows.push_back(choice<&R::snap>(
+        {"rsm_snap", "",
+         "a sun's map stands on whole texels of the world; that, with texels of one size from all directions; or is fitted closely (docs/sequences.md)",
+         "ours"},
+        {"texel", "sphere", "none"}));
 
     rows.push_back(whole<&L::depthLayers>({"depth_layers", "", "depth slices, a + 1", "paper Table 2: 2, 3"}, {1, 16}));
     rows.push_back(whole<&L::normalLayers>({"normal_layers", "", "slices of <n.l>, b + 1", "paper Table 2: 2"}, {1, 8}));
@@ -209,6 +214,9 @@ void addConeRows(std::vector<SettingRow>& rows)
         {"filter_passes", "", "after it, if it is on: 3x3 taps 4, 8, 16 pixels apart on the same surface, less where other surfaces are near",
          "ours; paper: 0"},
         {0, 3}));
+    rows.push_back(whole<&Set::gatherDivisor>({"gather_divisor", "pixels", "edge of the blocks of which one pixel is gathered for; the others are joint bilaterally upsampled",
+                                               "ours; paper: 1"},
+                                              powersOfTwo(1, 4)));
     rows.push_back(whole<&Set::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
     rows.push_back(real<&March::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));

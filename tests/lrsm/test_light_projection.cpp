@@ -108,6 +108,31 @@ TEST_CASE("light projection: a directional map holds all bounds and is snapped t
     }
 }
 
+TEST_CASE("light projection: rsm_snap=sphere keeps a sun's texels one size from all directions, and holds all bounds", "[lrsm][projection]")
+{
+    Random random(9);
+    const Aabb bounds{Vec3(-3, 0, -2), Vec3(4, 5, 2.5f)};
+    const float size = fitLightProjection(randomLight(random, LightType::directional, kAround), bounds, bounds, 128, RsmSnap::sphere).halfWidth;
+    float narrowest = kInfinity, widest = 0.0f;
+    for (int i = 0; i < 200; ++i) {
+        const Light light = randomLight(random, LightType::directional, kAround);
+        const LightProjection q = fitLightProjection(light, bounds, bounds, 128, RsmSnap::sphere);
+        REQUIRE(q.halfWidth == size);
+        for (unsigned k = 0; k < 8; ++k) {
+            const LightSpacePoint s = projectToLight(q, bounds.corner(k));
+            REQUIRE((s.u > -1e-5f && s.u < 1 + 1e-5f && s.v > -1e-5f && s.v < 1 + 1e-5f));
+        }
+        // A little more room changes nothing; the close fit follows it, and the direction.
+        const Aabb grown{bounds.min, bounds.max + Vec3(0.01f)};
+        REQUIRE(fitLightProjection(light, grown, grown, 128, RsmSnap::sphere).halfWidth == size);
+        const float close = fitLightProjection(light, bounds, bounds, 128, RsmSnap::none).halfWidth;
+        REQUIRE(close < fitLightProjection(light, bounds, bounds, 128, RsmSnap::texel).halfWidth);
+        narrowest = std::min(narrowest, close), widest = std::max(widest, close);
+    }
+    CHECK(widest > 1.1f * narrowest);
+    CHECK(widest < size);
+}
+
 TEST_CASE("light projection: a cube face's texels subtend 4 pi / 6, and texelSize is their edge", "[lrsm][projection]")
 {
     Light light;

@@ -6,6 +6,9 @@
 
 #include "catch.h"
 
+#include <cmath>
+#include <limits>
+
 using namespace lrsm;
 
 /// The sums of samples [begin, end) of one pixel with two channels, added in any way that the interface allows.
@@ -16,11 +19,12 @@ static double sampleValue(std::uint64_t index, int channel)
 static SampleSums sumsOf(SampleRange range)
 {
     SampleSums sums = makeSums(1, 2, 3);
+    SampleFaults faults;
     for (std::uint64_t block = range.begin / 8; block * 8 < range.end; ++block) {
         const std::uint64_t first = std::max(range.begin, block * 8), last = std::min(range.end, block * 8 + 8);
         std::vector<Int128> part(2, 0);
         for (std::uint64_t i = first; i < last; ++i)
-            for (int c = 0; c < 2; ++c) part[std::size_t(c)] += toFixed(sampleValue(i, c));
+            for (int c = 0; c < 2; ++c) part[std::size_t(c)] += toFixed(sampleValue(i, c), faults);
         if (last - first == 8) {
             for (std::size_t c = 0; c < 2; ++c) {
                 sums.sums[c] += part[c];
@@ -44,6 +48,22 @@ TEST_CASE("ranges joined in any order give the bits of the whole, also where the
     mergeSums(joined, sumsOf({0, a}), "test");
     CHECK(joined == whole);
     CHECK(joined.ranges == std::vector<SampleRange>{{0, 100}});
+}
+
+TEST_CASE("what a sum cannot hold is counted: NaN and infinity as 0, beyond 2^24 as that", "[reference][sums]")
+{
+    SampleFaults faults;
+    CHECK(toFixed(-0x1p24, faults) == -(Int128(1) << 72));
+    CHECK(toFixed(0x1p-48, faults) == 1);
+    CHECK(faults == SampleFaults{});
+    CHECK(toFixed(std::nextafter(0x1p24, 1e9), faults) == Int128(1) << 72);
+    CHECK(toFixed(-1e300, faults) == -(Int128(1) << 72));
+    CHECK(toFixed(std::numeric_limits<double>::infinity(), faults) == 0);
+    CHECK(toFixed(std::nan(""), faults) == 0);
+    CHECK(faults == SampleFaults{.notFinite = 2, .clamped = 2});
+    SampleFaults both = faults;
+    both += faults;
+    CHECK(both == SampleFaults{.notFinite = 4, .clamped = 4});
 }
 
 TEST_CASE("a gap stays visible and its blocks stay cut, an overlap is refused", "[reference][sums]")

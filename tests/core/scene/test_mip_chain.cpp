@@ -52,7 +52,7 @@ Scene texturedFloor(const Image<Rgba8>& image, float repeats)
     texture.image = image;
     scene.textures.push_back(texture);
     updateBounds(scene);
-    buildMipChains(scene);
+    buildMipChains(scene.textures, scene.materials);
     return scene;
 }
 
