@@ -147,7 +147,7 @@ void validate(const Settings& settings)
                          "estimator=paper");
     if (settings.method == Method::caches && cones.set.gatherDivisor != 1)
         throw InputError("settings method=caches, gather_divisor=" + std::to_string(cones.set.gatherDivisor),
-                         "caches lie in tiles of neighbouring pixels, which blocks are not; set gather_divisor=1, and a larger rc_tile for less time");
+                         "caches are placed by what all pixels see; set gather_divisor=1 (rc_tile says how many pixels share a cache)");
 }
 
 std::vector<SettingInfo> describeSettings()
