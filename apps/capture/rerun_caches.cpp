@@ -4,6 +4,7 @@
 #include "apps/capture/picture_buffers.h"
 #include "apps/capture/rerun.h"
 #include "apps/capture/voxel_buffers.h"
+#include "core/base/errors.h"
 
 namespace lrsm {
 

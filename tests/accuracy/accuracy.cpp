@@ -25,6 +25,9 @@ std::vector<std::pair<std::string, Settings>> variants()
 {
     std::vector<std::pair<std::string, Settings>> all;
     for (const std::string& name : presetNames()) all.emplace_back(name, preset(name));
+    // Tiles are in pixels, and the presets' are for pictures a dozen times as wide as these.
+    constexpr int kSmallTile = 4;
+    for (auto& [name, settings] : all) settings.caches.tile = kSmallTile;
     return all;
 }
 

@@ -104,6 +104,68 @@ TEST_CASE("method caches: a furnace, caches that all see L, gives every pixel pi
     CHECK(glossy > 200);
 }
 
+TEST_CASE("method caches: a pixel reads the caches within its radius and cosine, each with the lesser weight, against a search through all in double",
+          "[caches]")
+{
+    const auto scene = makeBuiltinScene("atrium");
+    const Requirements needs = analyseRequirements(*scene, {});
+    const GBuffer g = renderGBuffer(*scene, scene->cameras[0], needs, {96, 54});
+    const CacheSettings settings{.tile = 8, .radius = 1.5f, .minCosine = 0.5f};
+    const PixelClusters clusters = clusterPixels(g, scene->cameras[0], settings);
+    const CachePlaces places = placeCaches(g, scene->cameras[0], clusters, settings, Rotation::none);
+    const CacheAtlas none;
+    const CacheWorld world{.gbuffer = g, .camera = scene->cameras[0], .clusters = clusters, .places = places, .atlas = none, .settings = settings};
+    const double radius = 12.0, metresAPixel = 2.0 * std::tan(0.5 * double(scene->cameras[0].verticalFov)) / g.height;
+    std::size_t byWorld = 0, byScreen = 0;
+    for (int y = 0; y < g.height; y += 3)
+        for (int x = 0; x < g.width; x += 3) {
+            const std::size_t pixel = g.position.index(x, y);
+            if (!g.covered(pixel)) continue;
+            std::vector<double> read(places.size(), 0.0);
+            bool any = false;
+            forCachesOf(world, x, y, [&](std::uint32_t cache, float weight) { read[cache] = double(weight); });
+            std::vector<double> expected(places.size(), 0.0);
+            for (std::size_t c = 0; c < places.size(); ++c) {
+                const double dx = x - int(places.pixels[c]) % g.width, dy = y - int(places.pixels[c]) / g.width;
+                const double away = glm::length(glm::dvec3(g.position.texels[pixel]) - glm::dvec3(places.positions[c]));
+                const double worldRadius = radius * metresAPixel * double(g.depthLinear.texels[places.pixels[c]]);
+                const double ww = 1.0 - away * away / (worldRadius * worldRadius), ws = 1.0 - (dx * dx + dy * dy) / (radius * radius);
+                if (double(glm::dot(g.normal.texels[pixel], places.normals[c])) < 0.5 || !(std::min(ww, ws) > 0.0)) continue;
+                expected[c] = std::min(ww, ws);
+                (ww < ws ? byWorld : byScreen) += 1;
+                any = true;
+            }
+            if (!any) expected[clusters.clusterOf.texels[pixel] - 1] = 1.0;
+            for (std::size_t c = 0; c < places.size(); ++c) REQUIRE(std::abs(read[c] - expected[c]) < 1e-4);
+        }
+    CHECK(byWorld > 500);
+    CHECK(byScreen > 100);
+}
+
+TEST_CASE("method caches: light about a direction is linear between levels, and comes from the texel that looks there", "[caches]")
+{
+    const GBuffer nothing;
+    const Camera camera;
+    const PixelClusters clusters;
+    const CacheSettings settings{.resolution = 8, .mapping = GENERATE(CacheMapping::equalArea, CacheMapping::octahedral)};
+    const Vec3 axis = glm::normalize(Vec3(0.3f, -0.5f, 0.7f));
+    const CachePlaces places{.pixels = {0, 0}, .positions = {Vec3(0), Vec3(0)}, .normals = {Vec3(0, 1, 0), axis}, .pixelSizes = {1, 1}, .rotations = {0, 0}};
+    const CacheTables tables = makeCacheTables(settings, Rotation::none);
+    CacheAtlas atlas;
+    atlas.resolution = 8;
+    for (int level = 0; level < 4; ++level) atlas.levels.emplace_back(2u * std::size_t((8 >> level) * (8 >> level)), Vec4(float(level)));
+    const CacheWorld world{.gbuffer = nothing, .camera = camera, .clusters = clusters, .places = places, .atlas = atlas, .settings = settings};
+    for (const float level : {0.0f, 0.25f, 1.5f, 2.75f, 3.0f}) CHECK(radianceOf(world, 1, axis, level).x == Approx(level));
+
+    // Of the second cache, texel i alone is lit.
+    for (std::size_t i = 0; i < 64; i += 5) {
+        atlas.levels[0].assign(128, Vec4(0.0f));
+        atlas.levels[0][64 + i] = Vec4(1.0f);
+        CHECK(radianceOf(world, 1, basisFromNormal(axis) * tables.directions[i], 0.0f).x == Approx(1.0f).margin(1e-4));
+        CHECK(radianceOf(world, 0, basisFromNormal(places.normals[0]) * tables.directions[i], 0.0f).x == 0.0f);
+    }
+}
+
 TEST_CASE("method caches: a texel is what the slab march gives along it", "[caches]")
 {
     const auto scene = makeBuiltinScene("cornell-box");

@@ -123,6 +123,32 @@ TEST_CASE("caches convolved: constant radiance L is L in each mip and pi L for e
     }
 }
 
+TEST_CASE("caches convolved: a texel of any level is the mean by solid angle of what it covers, cache by cache", "[caches]")
+{
+    const CacheSettings settings = settingsOf(GENERATE(CacheMapping::equalArea, CacheMapping::octahedral));
+    const CacheTables tables = makeCacheTables(settings, Rotation::none);
+    CacheAtlas atlas;
+    atlas.resolution = 16;
+    atlas.half = false;
+    atlas.levels.emplace_back();
+    for (std::uint32_t i = 0; i < 2 * 256; ++i) atlas.levels[0].emplace_back(float((i * 2654435769u) >> 16) / 65536.0f, float(i % 16), float(i / 16), 1.0f);
+    atlas = convolveCaches(std::move(atlas), tables, settings);
+    for (std::size_t level = 1; level < 5; ++level) {
+        const std::size_t n = 16u >> level, edge = 1u << level;
+        for (std::size_t texel = 0; texel < 2 * n * n; ++texel) {
+            const std::size_t cache = texel / (n * n), row = texel % (n * n) / n, column = texel % n;
+            glm::dvec4 sum(0.0);
+            double whole = 0.0;
+            for (std::size_t k = 0; k < edge * edge; ++k) {
+                const std::size_t from = (row * edge + k / edge) * 16 + column * edge + k % edge;
+                sum += double(tables.solidAngle[0][from]) * glm::dvec4(atlas.levels[0][cache * 256 + from]);
+                whole += double(tables.solidAngle[0][from]);
+            }
+            REQUIRE(glm::length(glm::dvec4(atlas.levels[level][texel]) - sum / whole) < 1e-5);
+        }
+    }
+}
+
 TEST_CASE("caches convolved: irradiance of a half-lit hemisphere, of L = cos and of a sky, for the axis and for tilted normals", "[caches]")
 {
     const CacheMapping mapping = GENERATE(CacheMapping::equalArea, CacheMapping::octahedral);
