@@ -3,6 +3,7 @@
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
+#include "conetrace/frame/reduce.h"
 #include "conetrace/frame/smooth_irradiance.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/vct/gather.h"
@@ -50,15 +51,36 @@ GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& o
     return {options.width, options.height, settings.surface.textureFilter};
 }
 
+/// Light at each pixel by the chosen method; in the first `rows` averaged over the cone rotations of a 4x4 pattern, where it has one.
+Gathered gatherPixels(const GatherMethod& method, const GatherInput& input, int rows, PassLog& log)
+{
+    Gathered light = method.gather(input, log);
+    if (light.filter4x4) light.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(light.irradiance, input.gbuffer, rows); });
+    return light;
+}
+
+/// The same by way of one pixel a block.
+Gathered gatherBlocks(const GatherMethod& method, const GatherInput& input, PassLog& log)
+{
+    const ReducedGBuffer reduced = log.run("reduce", kPicturePass, [&] { return reduceGBuffer(input.gbuffer, input.settings.cones.set.gatherDivisor); });
+    const GatherInput few{.scene = input.scene,
+                          .camera = input.camera,
+                          .needs = input.needs,
+                          .settings = input.settings,
+                          .gbuffer = reduced.gbuffer,
+                          .rsms = input.rsms,
+                          .opacity = input.opacity,
+                          .lanes = input.lanes};
+    const Gathered light = gatherPixels(method, few, reduced.blockRows, log);
+    return log.run("upsample", kPicturePass, [&] { return upsample(light, reduced, input.gbuffer); });
+}
+
 /// From gathered light to the picture.
 void finish(Frame& frame, const Camera& camera, const Settings& settings, Gathered light, PassLog& log)
 {
     frame.irradiance = std::move(light.irradiance);
-    if (light.filter4x4) {
-        frame.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(frame.irradiance, frame.gbuffer); });
-        if (const int passes = settings.cones.set.filterPasses; passes > 0)
-            frame.irradiance = log.run("smooth", kPicturePass, [&] { return smoothIrradiance(frame.irradiance, frame.gbuffer, passes); });
-    }
+    if (const int passes = settings.cones.set.filterPasses; light.filter4x4 && passes > 0)
+        frame.irradiance = log.run("smooth", kPicturePass, [&] { return smoothIrradiance(frame.irradiance, frame.gbuffer, passes); });
     frame.combined = log.run("composite", kPicturePass, [&] {
         IndirectLight indirect = shadeIndirect(frame.gbuffer, camera, frame.irradiance, light.specular);
         Image<Vec3> sum = composite(frame.direct, indirect);
@@ -118,15 +140,15 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
                            [&] { return traceDirect(frame.gbuffer, scene, camera, world.depths(), &world.opacity, needs, settings.direct).radiance; });
 
     // Indirect light, by the chosen method, and the picture.
-    Gathered light = method.gather({.scene = scene,
-                                    .camera = camera,
-                                    .needs = needs,
-                                    .settings = settings,
-                                    .gbuffer = frame.gbuffer,
-                                    .rsms = world.rsms,
-                                    .opacity = world.opacity,
-                                    .lanes = options.lanes},
-                                   log);
+    const GatherInput input{.scene = scene,
+                            .camera = camera,
+                            .needs = needs,
+                            .settings = settings,
+                            .gbuffer = frame.gbuffer,
+                            .rsms = world.rsms,
+                            .opacity = world.opacity,
+                            .lanes = options.lanes};
+    Gathered light = settings.cones.set.gatherDivisor == 1 ? gatherPixels(method, input, frame.gbuffer.height, log) : gatherBlocks(method, input, log);
     finish(frame, camera, settings, std::move(light), log);
     return frame;
 }

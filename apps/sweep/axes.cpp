@@ -58,6 +58,7 @@ Words valuesOf(const SettingInfo& info, const Settings& base)
                                                                {"cone_count", "1 2 3 4 6 8 9 12 16 24 32"},
                                                                {"aperture_scale", "1.4 1 0.7 0.5 0.35 0.25"},
                                                                {"filter_passes", "0 1 2 3"},
+                                                               {"gather_divisor", "1 2 4"},
                                                                {"sets_per_pixel", "1 2 4"},
                                                                {"step", "1.5 1 0.75 0.5 0.4 0.25"},
                                                                {"start_voxels", "1 1.5 2 3 4 6"},

@@ -119,6 +119,7 @@ struct ConeSetSettings {
     Rotation rotation = Rotation::strata;
     bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
     int filterPasses = 2;  ///< wider passes after it (none without it), each twice as wide as the last, 0..3; less where walls are near
+    int gatherDivisor = 1;  ///< one pixel in a block of so many each way is gathered for, and lends the others its light, 1..4, power of two
     int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
     /// Those that run.
     int smoothingPasses() const { return filter ? filterPasses : 0; }

@@ -1,0 +1,134 @@
+#include "conetrace/frame/reduce.h"
+
+#include "conetrace/frame/same_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace lrsm {
+namespace {
+
+/// Blocks of a picture. Where the last one is cut by the picture's edge, its pixel is the last there is.
+struct Blocks {
+    int width = 0, height = 0, divisor = 1;
+
+    int columns() const { return (width + divisor - 1) / divisor; }
+    int rows() const { return (height + divisor - 1) / divisor; }
+    int middle(int block, int size) const { return std::min(block * divisor + divisor / 2, size - 1); }
+    std::size_t pixel(int column, int row) const { return std::size_t(middle(row, height)) * std::size_t(width) + std::size_t(middle(column, width)); }
+};
+
+/// The block before a coordinate, and how far it lies on the way to the next one, 0..1.
+struct Between {
+    int first = 0, second = 0;
+    float fraction = 0.0f;
+};
+Between between(const Blocks& blocks, int at, int count, int size)
+{
+    const int first = std::clamp((at - blocks.divisor / 2) / blocks.divisor, 0, count - 1), second = std::min(first + 1, count - 1);
+    const int begin = blocks.middle(first, size), end = blocks.middle(second, size);
+    return {first, second, end > begin ? std::clamp(float(at - begin) / float(end - begin), 0.0f, 1.0f) : 0.0f};
+}
+
+/// The blocks that a pixel takes its light from: index (row * columns + column) and weight; the weights of those on other surfaces are 0.
+struct BlockWeights {
+    std::array<std::size_t, 4> block{};
+    std::array<float, 4> weight{};
+    float sum() const { return (weight[0] + weight[1]) + (weight[2] + weight[3]); }
+};
+BlockWeights blockWeights(const GBuffer& gbuffer, const Blocks& blocks, int x, int y)
+{
+    const Between across = between(blocks, x, blocks.columns(), blocks.width), down = between(blocks, y, blocks.rows(), blocks.height);
+    const std::size_t here = gbuffer.position.index(x, y);
+    BlockWeights found;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        const bool right = (corner & 1) != 0, below = (corner & 2) != 0;
+        const int column = right ? across.second : across.first, row = below ? down.second : down.first;
+        found.block[corner] = std::size_t(row) * std::size_t(blocks.columns()) + std::size_t(column);
+        const float bilinear = (right ? across.fraction : 1.0f - across.fraction) * (below ? down.fraction : 1.0f - down.fraction);
+        const std::size_t there = blocks.pixel(column, row);
+        if (bilinear > 0.0f && (there == here || sameSurface(gbuffer, here, there))) found.weight[corner] = bilinear;
+    }
+    return found;
+}
+
+template <class T>
+void pick(const Image<T>& from, const std::vector<std::uint32_t>& source, int width, int height, Image<T>& to)
+{
+    if (from.empty()) return;
+    to = Image<T>(width, height);
+    for (std::size_t i = 0; i < source.size(); ++i) to.texels[i] = from.texels[source[i]];
+}
+
+template <class T>
+Image<T> upsampleImage(const Image<T>& values, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
+{
+    if (values.empty()) return {};
+    const Blocks blocks{gbuffer.width, gbuffer.height, reduced.divisor};
+    Image<T> out(gbuffer.width, gbuffer.height);
+    forCovered(gbuffer, [&](int x, int y) {
+        const BlockWeights blend = blockWeights(gbuffer, blocks, x, y);
+        const float total = blend.sum();
+        if (total < kLeastBlockWeight) return;
+        T sum{};
+        for (std::size_t k = 0; k < 4; ++k)
+            if (blend.weight[k] > 0.0f) sum += blend.weight[k] * values.texels[blend.block[k]];
+        out.at(x, y) = sum / total;
+    });
+    const std::size_t first = std::size_t(reduced.blockRows) * std::size_t(reduced.gbuffer.width);
+    for (std::size_t i = first; i < reduced.source.size(); ++i) out.texels[reduced.source[i]] = values.texels[i];
+    return out;
+}
+
+}  // namespace
+
+ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor)
+{
+    assert(divisor >= 2);
+    const Blocks blocks{gbuffer.width, gbuffer.height, divisor};
+    ReducedGBuffer out;
+    out.divisor = divisor;
+    out.blockRows = blocks.rows();
+
+    // The blocks' pixels, in the picture's order.
+    for (int row = 0; row < blocks.rows(); ++row)
+        for (int column = 0; column < blocks.columns(); ++column) out.source.push_back(static_cast<std::uint32_t>(blocks.pixel(column, row)));
+
+    // Pixels that stand alone, row by row.
+    std::vector<std::vector<std::uint32_t>> alone(std::size_t(gbuffer.height));
+    forCovered(gbuffer, [&](int x, int y) {
+        if (blockWeights(gbuffer, blocks, x, y).sum() < kLeastBlockWeight) alone[std::size_t(y)].push_back(static_cast<std::uint32_t>(gbuffer.position.index(x, y)));
+    });
+    for (const std::vector<std::uint32_t>& row : alone) {
+        out.source.insert(out.source.end(), row.begin(), row.end());
+        out.alone += row.size();
+    }
+
+    // What is seen there.
+    const int width = blocks.columns(), height = static_cast<int>((out.source.size() + std::size_t(width) - 1) / std::size_t(width));
+    GBuffer& to = out.gbuffer;
+    to.width = width, to.height = height;
+    pick(gbuffer.position, out.source, width, height, to.position);
+    pick(gbuffer.geometricNormal, out.source, width, height, to.geometricNormal);
+    pick(gbuffer.normal, out.source, width, height, to.normal);
+    pick(gbuffer.albedo, out.source, width, height, to.albedo);
+    pick(gbuffer.specularColor, out.source, width, height, to.specularColor);
+    pick(gbuffer.roughness, out.source, width, height, to.roughness);
+    pick(gbuffer.depthLinear, out.source, width, height, to.depthLinear);
+    pick(gbuffer.objectId, out.source, width, height, to.objectId);
+    return out;
+}
+
+Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
+{
+    Gathered out;
+    out.irradiance = upsampleImage(light.irradiance, reduced, gbuffer);
+    out.specular = upsampleImage(light.specular, reduced, gbuffer);
+    out.opacity = upsampleImage(light.opacity, reduced, gbuffer);
+    out.filter4x4 = light.filter4x4;
+    return out;
+}
+
+}  // namespace lrsm
