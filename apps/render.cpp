@@ -91,6 +91,11 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
     Progress progress(plan.arguments.quiet);
     RenderOptions options = plan.options;
     options.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
+    std::optional<Caches> caches;
+    if (plan.settings.method == Method::caches)
+        options.watch.observe = [&](const std::string&, const PassOutput& output) {
+            if (const auto* made = output.as<Caches>()) caches = *made;
+        };
     Rendered rendered{.json = {}, .frame = renderFrame(scene, camera, plan.settings, options), .memory = {}};
     const Frame& frame = rendered.frame;
     progress.show("writing", 0.0);
@@ -104,7 +109,8 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
                        .sceneHash = sceneHash,
                        .memory = predictMemory(memory),
                        .exposureStops = plan.exposure,
-                       .radiance = plan.arguments.radiance};
+                       .radiance = plan.arguments.radiance,
+                       .caches = caches ? &*caches : nullptr};
     addMeasured(record.memory, frame.passes);
     rendered.json = frameJson(frame, record);
     writeFrame(folder, frame, record, rendered.json);

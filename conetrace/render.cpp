@@ -1,5 +1,6 @@
 #include "conetrace/render.h"
 
+#include "conetrace/caches/gather.h"
 #include "conetrace/frame/composite.h"
 #include "conetrace/frame/direct.h"
 #include "conetrace/frame/irradiance_filter.h"
@@ -111,6 +112,7 @@ GatherMethod methodOf(const Settings& settings)
     switch (settings.method) {
     case Method::lrsm: return lrsmMethod(settings.cones.march.visibility);
     case Method::vct: return vctMethod();
+    case Method::caches: return cachesMethod();
     }
     throw InputError("method", "is none of the known");
 }

@@ -2,10 +2,10 @@ cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
 # The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm <- conetrace; core/bvh <- conetrace/lrsm, reference;
-# voxel <- voxel/surface, voxel/radiance <- conetrace/vct; conetrace/frame <- conetrace/vct <- conetrace;
+# voxel <- voxel/surface, voxel/radiance <- conetrace/vct; conetrace/frame <- conetrace/vct <- conetrace; conetrace/lrsm <- conetrace/caches <- conetrace;
 # conetrace, reference <- the commands that need libraries of their own <- the program. A folder that holds a target has a row.
 # `reference` shares scene, materials and lights with the passes, and no filtering or gathering code: so it can judge. Of visibility they share `core/bvh` alone, Embree's.
-set(passes core/base core/settings core/scene core/raster core/bvh voxel voxel/surface voxel/radiance lrsm conetrace conetrace/frame conetrace/lrsm conetrace/vct)
+set(passes core/base core/settings core/scene core/raster core/bvh voxel voxel/surface voxel/radiance lrsm conetrace conetrace/frame conetrace/lrsm conetrace/vct conetrace/caches)
 set(allowed_core/base core/base)
 set(allowed_core/settings core/base core/settings)
 set(allowed_core/scene core/base core/settings core/scene)
@@ -20,6 +20,7 @@ set(allowed_core/bvh core/base core/scene core/bvh)
 set(allowed_conetrace/frame core/base core/settings core/scene core/raster voxel lrsm conetrace/frame)
 set(allowed_conetrace/lrsm ${allowed_conetrace/frame} core/bvh conetrace/lrsm)
 set(allowed_conetrace/vct ${allowed_conetrace/frame} voxel/surface voxel/radiance conetrace/vct)
+set(allowed_conetrace/caches ${allowed_conetrace/lrsm} conetrace/caches)
 set(allowed_conetrace ${passes})
 set(allowed_reference core/base core/scene core/bvh reference)
 set(allowed_apps/common ${passes} core/imageio core/report apps/common)

@@ -42,7 +42,8 @@ class Catalogue {
                     Dtype dtype = Dtype::f4);
 };
 
-/// Spaces and units that several passes name.
-inline constexpr const char *kWorldSpace = "world", *kRadianceUnit = "W/(m^2 sr)";
+/// Spaces, units and components that several passes name.
+inline constexpr const char *kWorldSpace = "world", *kPicture = "picture", *kRadianceUnit = "W/(m^2 sr)", *kIrradianceUnit = "W/m^2";
+inline const Catalogue::Names kXyz = {"x", "y", "z"}, kRgb = {"r", "g", "b"}, kRgbOpacity = {"r", "g", "b", "opacity"};
 
 }  // namespace lrsm

@@ -1,5 +1,6 @@
 #include "apps/capture/passes.h"
 
+#include "apps/capture/caches_buffers.h"
 #include "apps/capture/map_buffers.h"
 #include "apps/capture/picture_buffers.h"
 #include "apps/capture/scene_buffers.h"
@@ -93,6 +94,37 @@ void keepVctMips(const PassOutput& output, std::size_t, Capture& capture)
     if (const auto* volume = output.as<RadianceVolume>()) mipsToBuffers(*volume, capture.buffers);
 }
 
+void keepClusters(const PassOutput& output, std::size_t, Capture& capture)
+{
+    const auto* clusters = output.as<PixelClusters>();
+    if (!clusters) return;
+    shapeBuffers(*clusters, capture.buffers);
+    toBuffers(*clusters, capture.buffers);
+}
+
+void keepPlaces(const PassOutput& output, std::size_t, Capture& capture)
+{
+    const auto* places = output.as<CachePlaces>();
+    if (!places) return;
+    shapeBuffers(*places, capture.buffers);
+    toBuffers(*places, capture.buffers);
+}
+
+void keepFilled(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* atlas = output.as<CacheAtlas>()) filledToBuffers(*atlas, capture.buffers);
+}
+
+void keepConvolved(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* atlas = output.as<CacheAtlas>()) convolvedToBuffers(*atlas, capture.buffers);
+}
+
+void keepCachedLight(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* gathered = output.as<Gathered>()) cachedLightToBuffers(*gathered, capture.buffers);
+}
+
 // What of the passes a frame has.
 bool ofLrsm(const Settings& settings)
 {
@@ -102,13 +134,21 @@ bool ofVct(const Settings& settings)
 {
     return settings.method == Method::vct;
 }
+bool ofCaches(const Settings& settings)
+{
+    return settings.method == Method::caches;
+}
+bool hasLayers(const Settings& settings)
+{
+    return ofLrsm(settings) || ofCaches(settings);
+}
 bool ofVctSurface(const Settings& settings)
 {
     return ofVct(settings) && readsSurface(settings.vct);
 }
 bool readsVoxelMips(const Settings& settings)
 {
-    return ofLrsm(settings) || settings.direct.shadows == Shadows::cone;
+    return hasLayers(settings) || settings.direct.shadows == Shadows::cone;
 }
 bool comparesShadows(const Settings& settings)
 {
@@ -147,7 +187,7 @@ const std::vector<PassRow> kRows = {
      .sameTexel = {"rsm#.depth", "rsm#.radiance", "rsm#.normal"}},
     {.family = "shadow", .perLight = true, .stages = {"direct"}, .exists = comparesShadows, .reads = {"scene"},
      .describe = describeShadow, .record = keepShadow, .rerun = rerunShadow},
-    {.family = "lrsm", .perLight = true, .stages = {"layers"}, .exists = ofLrsm, .reads = {"rsm"},
+    {.family = "lrsm", .perLight = true, .stages = {"layers"}, .exists = hasLayers, .reads = {"rsm"},
      .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
     {.family = "vct surface", .stages = {"voxel"}, .exists = ofVctSurface, .reads = {"scene", "voxelize"},
      .describe = describeVctSurface, .record = keep<PlacedSurface>, .rerun = rerunVctSurface},
@@ -167,12 +207,23 @@ const std::vector<PassRow> kRows = {
     {.family = "vct cones", .stages = {"cones", "vct"}, .exists = ofVct, .reads = {"tables", "gbuffer", "vct inject", "vct mips"},
      .describe = describeCones, .record = keepCones, .rerun = rerunVctCones,
      .sameTexel = kReceivers},
-    {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones"},
+    {.family = "rc clusters", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer"},
+     .describe = describeClusters, .record = keepClusters, .rerun = rerunClusters},
+    {.family = "rc places", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer", "rc clusters"},
+     .describe = describePlaces, .record = keepPlaces, .rerun = rerunPlaces},
+    {.family = "rc fill", .stages = {"cones", "caches"}, .exists = ofCaches, .reads = {"tables", "rc places", "voxelize", "voxel mips", "lrsm"},
+     .describe = describeFill, .record = keepFilled, .rerun = rerunFill},
+    {.family = "rc convolve", .stages = {"caches"}, .exists = ofCaches, .reads = {"tables", "rc fill"},
+     .describe = describeConvolved, .record = keepConvolved, .rerun = rerunConvolve},
+    {.family = "rc gather", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer", "rc clusters", "rc places", "rc fill", "rc convolve"},
+     .describe = describeCachedLight, .record = keepCachedLight, .rerun = rerunCachedLight,
+     .sameTexel = kReceivers},
+    {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones", "rc gather"},
      .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
      .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
-    {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "filter"},
+    {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "rc gather", "filter"},
      .describe = describeSmooth, .record = keepPicture<kSmooth>, .rerun = rerunSmooth},
-    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "filter", "smooth"},
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "rc gather", "filter", "smooth"},
      .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
      .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
                    "composite.specular"}},
@@ -225,7 +276,10 @@ std::size_t lightOfPass(const std::string& pass)
 HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
 {
     const std::string family = passFamily(pass);
-    return family == "rsm" ? settings.rsm.halfRounding : family.starts_with("vct") ? settings.vct.halfRounding : settings.layers.halfRounding;
+    return family == "rsm"             ? settings.rsm.halfRounding
+           : family.starts_with("vct") ? settings.vct.halfRounding
+           : family.starts_with("rc")  ? settings.caches.halfRounding
+                                       : settings.layers.halfRounding;
 }
 
 std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights)

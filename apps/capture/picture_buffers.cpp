@@ -9,9 +9,6 @@ namespace {
 
 using Names = Catalogue::Names;
 
-const Names kXyz = {"x", "y", "z"}, kRgb = {"r", "g", "b"}, kRgbOpacity = {"r", "g", "b", "opacity"};
-constexpr const char *kPicture = "picture", *kIrradianceUnit = "W/m^2";
-
 std::size_t pixelsOf(const Capture& capture)
 {
     return static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height);

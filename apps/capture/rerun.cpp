@@ -70,7 +70,7 @@ std::optional<Buffer> wideOutput(const Capture& inputs, const std::string& name)
     outputs[0].encoding = Encoding::number;
     outputs[0].bytes.clear();
     Settings settings = inputs.settings;
-    settings.rsm.storage = settings.layers.storage = settings.vct.storage = Storage::float32;
+    settings.rsm.storage = settings.layers.storage = settings.vct.storage = settings.caches.storage = Storage::float32;
     try {
         row->makeMap(inputs, settings, lightOfPass(described->pass), outputs);
     } catch (const InputError&) {

@@ -1,6 +1,7 @@
 #include "apps/capture/tables.h"
 
 #include "apps/capture/tolerances.h"
+#include "conetrace/caches/gather.h"
 #include "conetrace/frame/specular_albedo.h"
 #include "conetrace/vct/gather.h"
 
@@ -55,8 +56,12 @@ void addSchedules(CaptureTables& tables)
 /// The method's own.
 GatherPlan planOf(const Requirements& needs, const Settings& settings)
 {
-    return settings.method == Method::vct ? planVct(settings.cones, needs, settings.voxel.resolution)
-                                          : planGather(settings.cones, needs, settings.voxel.resolution);
+    switch (settings.method) {
+    case Method::vct: return planVct(settings.cones, needs, settings.voxel.resolution);
+    case Method::caches: return planCaches(settings.caches, settings.cones, settings.voxel.resolution);
+    case Method::lrsm: break;
+    }
+    return planGather(settings.cones, needs, settings.voxel.resolution);
 }
 
 }  // namespace
@@ -70,6 +75,12 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
     tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);
     tables.rotation = rotations(settings.cones.set.rotation);
     addSchedules(tables);
+    if (settings.method == Method::caches) {
+        const CacheTables caches = makeCacheTables(settings.caches, settings.cones.set.rotation);
+        const auto n = std::size_t(caches.resolution);
+        tables.cosineShare = tableOf("tables.rc_cosine_share", Dtype::f4, {kDiffuseNodes, kDiffuseNodes, n, n}, caches.cosineShare);
+        tables.solidAngle = tableOf("tables.rc_solid_angle", Dtype::f4, {n, n}, caches.solidAngle[0]);
+    }
     if (const std::vector<float>& phi = tables.phi.table(); !phi.empty()) tables.gaussian = tableOf("tables.gaussian", Dtype::f4, {phi.size()}, phi);
     if (needs.specular)
         tables.specularAlbedo =
@@ -89,6 +100,9 @@ void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
          {"where a cone takes its samples; rows of 0 after the last step", "along the cone from its apex", "base voxels"});
     rows(tables.steps, {"schedule"}, {}, {"steps of each schedule", "", ""});
     rows(tables.gaussian, {"entry"}, {}, {"Phi over [-5, 5], linear between entries", "", ""});
+    rows(tables.cosineShare, {"node_row", "node_column", "row", "column"}, {},
+         {"share of each texel of a cache in the irradiance of a node's normal", "cache", ""});
+    rows(tables.solidAngle, {"row", "column"}, {}, {"of a cache's texels", "cache", "sr"});
     rows(tables.specularAlbedo, {"roughness", "root_n_dot_v"}, {"scale", "bias"},
          {"directional albedo of the lobe = F0 scale + bias; over roughness and sqrt(n.v), both 0 .. 1", "", ""});
 }

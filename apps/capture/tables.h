@@ -17,9 +17,9 @@ struct Table {
 struct CaptureTables {
     GatherPlan plan;
     NormalCdf phi;
-    Table directions, rotation, schedules, steps, gaussian, specularAlbedo;
+    Table directions, rotation, schedules, steps, gaussian, specularAlbedo, cosineShare, solidAngle;
 
-    std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo}; }
+    std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo, &cosineShare, &solidAngle}; }
 };
 CaptureTables makeTables(const Requirements& needs, const Settings& settings);
 

@@ -51,6 +51,12 @@ const Tolerance kVoxelSurface = absolute(2e-3, kEdges, "means in another precisi
 const Tolerance kInjected = relative(2e-2, 0.01, "two steps of half; a texel on the face between two voxels falls into the one or the other");
 const Tolerance kInjectedNormal = absolute(1e-2, 0.01, "as the voxel's radiance");
 
+const Tolerance kClusters = exact(0.02, "a normal between two axes or a depth between two slices falls to the one or the other");
+const Tolerance kClusterAxes = absolute(1e-4, 0.02, "a normal on the edge of a bin of the histogram falls to its neighbour, and the axis with it");
+const Tolerance kPlaces = absolute(1e-5, 0.02, "of two pixels of nearly one score either may hold the cache");
+const Tolerance kFolded = relative(2e-3, 0.0, "the order of N^2 additions, and a step of half");
+const Tolerance kCached = relative(5e-3, 0.002, "a sampler's 8-bit fractions; a cache at the limit of its radius or cosine");
+
 Tolerance voxelMip(bool unorm)
 {
     if (!unorm) return absolute(1e-6, 0.0, "the order of eight additions");

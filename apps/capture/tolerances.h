@@ -24,8 +24,13 @@ extern const Tolerance kFilter;
 extern const Tolerance kVoxelSurface;    ///< means over a voxel's fragments
 extern const Tolerance kInjected;        ///< radiance of a voxel
 extern const Tolerance kInjectedNormal;  ///< of what emits in it
-extern const Tolerance kProduct;         ///< composite: a few multiplications
-extern const Tolerance kSpecularPart;    ///< composite: a table besides
+extern const Tolerance kClusters;        ///< indices and keys of clusters
+extern const Tolerance kClusterAxes;
+extern const Tolerance kPlaces;        ///< of caches
+extern const Tolerance kFolded;        ///< irradiance of caches
+extern const Tolerance kCached;        ///< what pixels take from caches
+extern const Tolerance kProduct;       ///< composite: a few multiplications
+extern const Tolerance kSpecularPart;  ///< composite: a table besides
 
 /// Sets the floor of a relative tolerance: a twentieth of the mean magnitude of the elements that are not 0.
 void setFloor(Buffer& buffer);

@@ -38,6 +38,8 @@ const std::vector<NumericTry>& numericTries()
         {"density_k", {"1", "2"}},
         {"push", {"0", "1"}},
         {"vct_facing", {"0", "0.1", "2"}},
+        {"rc_radius", {"1", "2"}},
+        {"rc_min_cosine", {"-1", "0", "0.5"}},
         {"depth_bias_texels", {"0", "0.5", "0.75", "1", "2"}},
         {"shadow_cone_aperture_degrees", {"1", "2", "4"}},
         {"specular_aperture_degrees", {"5", "10", "20"}},

@@ -34,7 +34,7 @@ class Inputs {
             volumeChildren(level);
         else if (buffer_.pass == "cones" || buffer_.pass == "vct cones")
             cones();
-        else if (isMip(buffer_.name))
+        else if (isMip(buffer_.name) && buffer_.pass != "rc fill")
             level > 0 ? layerChildren(level) : rsmBlock();
     }
 

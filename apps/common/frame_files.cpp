@@ -1,5 +1,6 @@
 #include "apps/common/frame_files.h"
 
+#include "apps/common/caches_picture.h"
 #include "apps/common/describe.h"
 #include "core/base/parallel.h"
 #include "core/imageio/image_io.h"
@@ -102,7 +103,7 @@ void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& rec
         std::function<std::vector<std::byte>()> encode;
     };
     const auto png = [](const char* name, auto picture) { return File{name, [=] { return encodePng(picture()); }}; };
-    const File files[] = {
+    std::vector<File> files = {
         {"image.exr", [&] { return encodeExr(layersOf(frame, record.scene, json)); }},
         png("image.png", [&] { return tonemap(frame.combined, stops); }),
         png("direct.png", [&] { return tonemap(frame.direct, stops); }),
@@ -114,7 +115,8 @@ void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& rec
         png("depth.png", [&] { return depthPicture(frame.gbuffer.depthLinear); }),
         png("opacity.png", [&] { return falseColor(frame.opacity, 0.0f, 1.0f); }),
     };
-    std::vector<std::vector<std::byte>> encoded(std::size(files));
+    if (record.caches) files.push_back(png("caches.png", [&] { return cachesPicture(*record.caches, stops); }));
+    std::vector<std::vector<std::byte>> encoded(files.size());
     parallelFor(encoded.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) encoded[i] = files[i].encode();
     });

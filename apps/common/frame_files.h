@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/common/memory.h"
+#include "conetrace/caches/gather.h"
 #include "conetrace/render.h"
 #include "core/base/output_folder.h"
 
@@ -21,6 +22,7 @@ struct FrameRecord {
     std::vector<MemoryRow> memory;
     std::optional<float> exposureStops;  ///< of the PNGs; nothing: automatic
     std::string radiance;                ///< of what the diffuse gather meets: "lrsm" or "exact"
+    const Caches* caches = nullptr;      ///< of method=caches: drawn as caches.png
 };
 
 nlohmann::ordered_json frameJson(const Frame& frame, const FrameRecord& record);

@@ -209,6 +209,8 @@ std::vector<std::string> passMessages(const std::vector<PassReport>& passes)
         lines.push_back(count(clamped, "value") +
                         " of light maps clamped to 65504, the most that half holds: light is missing there (--set rsm_storage=float32 --set "
                         "layer_storage=float32 keeps it)");
+    if (const double doublings = counterSum(passes, "tile_doublings"); doublings > 0.0)
+        lines.push_back("more clusters than rc_max caches: rc_tile was doubled " + count(doublings, "time") + " (--set rc_max=65536 allows more)");
     if (const double nans = counterSum(passes, "nans"); nans > 0.0) lines.push_back(count(nans, "value") + " of light maps not a number, taken as 0");
     return lines;
 }

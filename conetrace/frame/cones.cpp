@@ -26,16 +26,6 @@ float tracedTangent(double halfAngle, float scale)
     return static_cast<float>(tangent(std::min(halfAngle * double(scale), kLargestHalfAngle)));
 }
 
-/// The 16 points of a Hammersley set, in the order of their bit-reversed index.
-struct Jitter {
-    double u, v;
-};
-Jitter hammersley16(int index)
-{
-    const int reversed = ((index & 1) << 3) | ((index & 2) << 1) | ((index & 4) >> 1) | ((index & 8) >> 3);
-    return {(index + 0.5) / kRotations, (reversed + 0.5) / kRotations};
-}
-
 Vec3 directionAt(double cosPolar, double sinPolar, double azimuth)
 {
     const SinCos sc = sinCos(azimuth);
@@ -113,7 +103,7 @@ ConeSet makeConeSet(const ConeSettings& settings)
     }
 
     for (int rotation = 0; rotation < kRotations; ++rotation) {
-        const Jitter jitter = hammersley16(rotation);
+        const StratumPlace jitter = stratumPlace(rotation);
         for (const ConeRing& ring : set.rings) {
             const double sinInner = sinCos(ring.innerAngle).sin, sinOuter = sinCos(ring.outerAngle).sin;
             for (int k = 0; k < ring.count; ++k) {
@@ -130,6 +120,12 @@ ConeSet makeConeSet(const ConeSettings& settings)
         }
     }
     return set;
+}
+
+StratumPlace stratumPlace(int rotation)
+{
+    const int reversed = ((rotation & 1) << 3) | ((rotation & 2) << 1) | ((rotation & 4) >> 1) | ((rotation & 8) >> 3);
+    return {(rotation + 0.5) / kRotations, (reversed + 0.5) / kRotations};
 }
 
 int rotationOfPixel(int x, int y, Rotation rotation)

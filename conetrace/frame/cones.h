@@ -45,6 +45,12 @@ struct ConeSet {
 inline constexpr float kConeSetMaxError = 1.5e-7f;
 ConeSet makeConeSet(const ConeSettings& settings);
 
+/// Where in its stratum, [0, 1)^2, a set of Rotation::strata looks: the 16 points of a Hammersley set, in the order of their bit-reversed index.
+struct StratumPlace {
+    double u, v;
+};
+StratumPlace stratumPlace(int rotation);
+
 /// Which of the 16 rotations a pixel uses: a 4x4 ordered (bit-reversed) pattern, so that near pixels differ most.
 int rotationOfPixel(int x, int y, Rotation rotation);
 

@@ -6,7 +6,6 @@ namespace lrsm {
 namespace {
 
 constexpr int kRoughnessClasses = 64;
-constexpr float kCubeDiagonal = 1.7320508f;
 
 }  // namespace
 
@@ -21,7 +20,7 @@ GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, i
 {
     GatherPlan plan;
     plan.cones = makeConeSet(settings);
-    const float reach = kCubeDiagonal * static_cast<float>(gridResolution);
+    const float reach = gridDiagonal(gridResolution);
     for (const ConeRing& ring : plan.cones.rings) plan.ringSchedules.push_back(makeSchedule(settings, ring.tanHalf, reach));
     if (needs.specular) {
         const int classes = settings.specular.aperture == SpecularAperture::fixed ? 1 : kRoughnessClasses;

@@ -18,6 +18,13 @@ struct GatherPlan {
     const MarchSchedule& specularSchedule(float roughness) const;
 };
 
+/// Of the whole grid, in voxels: how far cones reach.
+inline float gridDiagonal(int gridResolution)
+{
+    constexpr float kCubeDiagonal = 1.7320508f;
+    return kCubeDiagonal * static_cast<float>(gridResolution);
+}
+
 /// Cones reach through the whole grid, `gridResolution` voxels along an edge.
 GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, int gridResolution);
 

@@ -192,7 +192,29 @@ struct VctSettings {
     bool operator==(const VctSettings&) const = default;
 };
 
-enum class Method { lrsm, vct };  ///< of indirect light
+enum class CacheMapping { equalArea, octahedral };  ///< of a cache's hemisphere to its square of texels
+enum class CacheHorizon { renormalise, black };     ///< below a cache's own horizon: as the mean above it, or nothing
+enum class CacheLobe { equivalent, cutoff };        ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
+enum class CacheScoreScale { cluster, metre };      ///< length that the placement's score measures distances in
+
+/// Clustered pre-convolved radiance caching.
+struct CacheSettings {
+    int tile = 32;           ///< pixels along an edge of a tile, power of two, 1..256
+    int resolution = 16;     ///< texels (cones) along an edge of a cache, power of two, 2..32
+    float radius = 1.0f;     ///< of a cache's influence in tiles, on screen and at its depth, (0, 8]
+    float minCosine = 0.5f;  ///< least cosine between a pixel's normal and that of a cache it reads, [-1, 1)
+    int minPixels = 0;       ///< smaller clusters join the tile's nearest of the same axis, 0..65536
+    int maxCaches = 16384;   ///< beyond, tiles double, 1..2^22
+    CacheMapping mapping = CacheMapping::equalArea;
+    CacheHorizon horizon = CacheHorizon::renormalise;
+    CacheLobe lobe = CacheLobe::equivalent;
+    CacheScoreScale scoreScale = CacheScoreScale::cluster;
+    Storage storage = Storage::gpu;
+    HalfRounding halfRounding = HalfRounding::d3d;
+    bool operator==(const CacheSettings&) const = default;
+};
+
+enum class Method { lrsm, vct, caches };  ///< of indirect light
 
 struct ForceSettings {
     bool everything = false;  ///< run every pass and branch that the scene analysis would leave out (tests that the analysis is safe)
@@ -208,6 +230,7 @@ struct Settings {
     DirectSettings direct;
     ConeSettings cones;
     VctSettings vct;
+    CacheSettings caches;
     ForceSettings force;
     bool operator==(const Settings&) const = default;
 };

@@ -131,6 +131,29 @@ Settings vctPaper()
     return s;
 }
 
+/// Radiance caches filled by the LRSM's cones.
+Settings caches()
+{
+    Settings s;
+    s.method = Method::caches;
+    s.cones.set.apertureScale = 1.0f;
+    s.cones.set.rotation = Rotation::none;
+    s.cones.set.filter = false;
+    return s;
+}
+
+/// What of the caches' paper does not hang on its voxels: caches shared as it says.
+Settings cachesPaper()
+{
+    Settings s = caches();
+    s.caches.tile = 64;
+    s.caches.radius = 2.0f;
+    s.caches.minCosine = -1.0f;
+    s.caches.lobe = CacheLobe::cutoff;
+    s.caches.scoreScale = CacheScoreScale::metre;
+    return s;
+}
+
 /// Sixteen rays a pixel through the triangles, each with a narrow lookup: no voxels, but a BVH.
 Settings rays()
 {
@@ -156,7 +179,9 @@ std::vector<Preset> presets()
             {{"accurate", "32 cones, 1024^3 voxels, RSM of 2048^2"}, accurate},
             {{"rays", "16 rays a pixel through the triangles, light from the LRSM where they hit"}, rays},
             {{"vct", "voxel cone tracing with the default's cones, 256^3 voxels"}, vct},
-            {{"vct-paper", "voxel cone tracing as the paper compares itself with, 256^3 voxels"}, vctPaper}};
+            {{"vct-paper", "voxel cone tracing as the paper compares itself with, 256^3 voxels"}, vctPaper},
+            {{"caches", "clustered radiance caches, filled by the LRSM"}, caches},
+            {{"caches-paper", "caches as placed and shared by their paper, filled by the LRSM"}, cachesPaper}};
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct Places {
     static auto of(auto& s, LrsmGatherSettings*) { return std::pair(&s.cones.gather, "cones"); }
     static auto of(auto& s, SpecularSettings*) { return std::pair(&s.cones.specular, "cones"); }
     static auto of(auto& s, VctSettings*) { return std::pair(&s.vct, "vct"); }
+    static auto of(auto& s, CacheSettings*) { return std::pair(&s.caches, "caches"); }
     static auto of(auto& s, ForceSettings*) { return std::pair(&s.force, "force"); }
 };
 
@@ -116,17 +117,18 @@ using March = MarchSettings;
 using Gather = LrsmGatherSettings;
 using Specular = SpecularSettings;
 using Vct = VctSettings;
+using C = CacheSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
 /// In the order of the enumeration Method.
 SettingRow methodRow()
 {
-    const Names names = {"lrsm", "vct"};
+    const Names names = {"lrsm", "vct", "caches"};
     return {.key = "method",
             .stage = "method",
             .unit = "",
-            .meaning = "of indirect light: layered reflective shadow maps, or voxel cone tracing",
+            .meaning = "of indirect light: layered reflective shadow maps, voxel cone tracing, or clustered radiance caches",
             .source = "paper: lrsm",
             .kind = SettingKind::choice,
             .range = {0, static_cast<float>(names.size() - 1)},
@@ -270,23 +272,55 @@ void addLookupRows(std::vector<SettingRow>& rows)
     rows.push_back(
         choice<&Vct::weights>({"vct_weights", "", "of the three directional volumes: |d|, or d^2", "ours; [CNS*11] gives none"}, {"absolute", "squared"}));
     rows.push_back(choice<&Vct::opacity>({"vct_opacity", "", "a texel's opacity scaled to the step's length, or as it is", "ours"}, {"step", "none"}));
+}
 
+/// [C]: Rehfeld, Zirr and Dachsbacher, "Clustered Pre-convolved Radiance Caching", EGPGV 2014.
+void addCacheRows(std::vector<SettingRow>& rows)
+{
+    rows.push_back(
+        whole<&C::tile>({"rc_tile", "pixels", "edge of the tiles whose pixels are clustered", "[C]: about 64 for 4096 caches"}, powersOfTwo(1, 256)));
+    rows.push_back(whole<&C::resolution>({"rc_resolution", "texels", "edge of a cache: a cone a texel of it", "[C] Sec. 5: 16"}, powersOfTwo(2, 32)));
+    rows.push_back(real<&C::radius>({"rc_radius", "tiles", "how far a cache lends its light, on screen and at its depth", "[C] Sec. 3.3: 2"}, above(0, 8)));
+    rows.push_back(
+        real<&C::minCosine>({"rc_min_cosine", "", "least cosine between a pixel's normal and that of a cache it reads", "ours; [C]: -1"}, below(-1, 1)));
+    rows.push_back(whole<&C::minPixels>({"rc_min_pixels", "pixels", "smaller clusters join the tile's nearest of the same axis", "ours; [C]: 0"}, {0, 65536}));
+    rows.push_back(whole<&C::maxCaches>({"rc_max", "caches", "with more clusters, tiles are doubled", "ours; [C]: 4096 caches"}, {1, 1 << 22}));
+    rows.push_back(choice<&C::mapping>({"rc_mapping", "", "of a cache's hemisphere to its texels: all of one solid angle, or an octahedron's", "ours"},
+                                       {"equal_area", "octahedral"}));
+    rows.push_back(
+        choice<&C::horizon>({"rc_horizon", "", "diffuse light from below a cache's horizon: as the mean above it, or none", "ours"}, {"renormalise", "black"}));
+    rows.push_back(
+        choice<&C::lobe>({"rc_lobe", "", "solid angle of a specular lobe: of a uniform one with its peak, or where it falls to 1 %", "[C] Sec. 3.3: cutoff"},
+                         {"equivalent", "cutoff"}));
+    rows.push_back(choice<&C::scoreScale>(
+        {"rc_score_scale", "", "lengths in the placement's score over the cluster's diagonal, or in metres", "ours; [C] Sec. 3.2: metre"},
+        {"cluster", "metre"}));
+    rows.push_back(choice<&C::storage>({"rc_storage", "", "caches in half or in float32", "[C]: none given"}, {"gpu", "float32"}));
+    rows.push_back(choice<&C::halfRounding>({"rc_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
+}
+
+void addForceRows(std::vector<SettingRow>& rows)
+{
     rows.push_back(
         flag<&F::everything>({"force_everything", "", "run every pass and branch that the scene analysis would leave out (changes no bit)", "ours"}));
 }
 
 void addShorthands(std::vector<SettingRow>& rows)
 {
+    rows.push_back(
+        shorthand(choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage, layer_storage, vct_storage and rc_storage at once", "paper Table 1: gpu"},
+                                      {"gpu", "float32"}),
+                  [](Settings& settings, double value) {
+                      settings.voxel.storage = settings.rsm.storage = settings.layers.storage = settings.vct.storage = settings.caches.storage =
+                          static_cast<Storage>(value);
+                  }));
     rows.push_back(shorthand(
-        choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage, layer_storage and vct_storage at once", "paper Table 1: gpu"}, {"gpu", "float32"}),
+        choice<&L::halfRounding>(
+            {"half_rounding", "", "rsm_half_rounding, layer_half_rounding, vct_half_rounding and rc_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
+            {"d3d", "nearest_even"}),
         [](Settings& settings, double value) {
-            settings.voxel.storage = settings.rsm.storage = settings.layers.storage = settings.vct.storage = static_cast<Storage>(value);
-        }));
-    rows.push_back(shorthand(
-        choice<&L::halfRounding>({"half_rounding", "", "rsm_half_rounding, layer_half_rounding and vct_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
-                                 {"d3d", "nearest_even"}),
-        [](Settings& settings, double value) {
-            settings.rsm.halfRounding = settings.layers.halfRounding = settings.vct.halfRounding = static_cast<HalfRounding>(value);
+            settings.rsm.halfRounding = settings.layers.halfRounding = settings.vct.halfRounding = settings.caches.halfRounding =
+                static_cast<HalfRounding>(value);
         }));
 }
 
@@ -299,6 +333,8 @@ std::span<const SettingRow> settingRows()
         addBuildingRows(rows);
         addConeRows(rows);
         addLookupRows(rows);
+        addCacheRows(rows);
+        addForceRows(rows);
         addShorthands(rows);
         return rows;
     }();

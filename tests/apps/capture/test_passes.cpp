@@ -11,7 +11,7 @@ using namespace lrsm::test;
 TEST_CASE("passes: every pass of a frame has a row, which records what it describes, and runs anew what it records", "[capture][passes]")
 {
     Settings settings = smallSettings();
-    settings.method = GENERATE(Method::lrsm, Method::vct);
+    settings.method = GENERATE(Method::lrsm, Method::vct, Method::caches);
     settings.vct.injection = Injection::voxel;
     settings.force.everything = true;
     settings.direct.shadows = GENERATE(Shadows::exact, Shadows::hard, Shadows::cone);
@@ -61,5 +61,6 @@ TEST_CASE("passes: are asked for by family, by light, and as a command line spel
     CHECK(isAskedFor({"voxel-mips"}, "voxel mips"));
     CHECK_FALSE(isAskedFor({"voxel"}, "voxel mips"));
     CHECK(passNames("!") ==
-          "voxelize, voxel-mips, rsm, shadow, lrsm!, vct-surface, vct-inject, vct-mips, gbuffer, direct, cones, vct-cones, filter, smooth, composite");
+          "voxelize, voxel-mips, rsm, shadow, lrsm!, vct-surface, vct-inject, vct-mips, gbuffer, direct, cones, vct-cones, rc-clusters, rc-places, rc-fill, "
+          "rc-convolve, rc-gather, filter, smooth, composite");
 }

@@ -18,6 +18,11 @@ inline Candidate candidateOf(
     return candidate;
 }
 
+inline bool textHas(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
 inline std::uint16_t* codesOf(Buffer& b)
 {
     return reinterpret_cast<std::uint16_t*>(b.bytes.data());

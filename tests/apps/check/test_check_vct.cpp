@@ -33,11 +33,6 @@ void tooMuch(Buffer& buffer)
     recompute(buffer, [](const Buffer& before, std::size_t i) { return 1.5 * decodedValue(before, i); });
 }
 
-bool textHas(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
-}
-
 /// The candidate is what the golden's passes make with these settings, pass by pass.
 Capture madeWith(const std::string& assignment, const std::string& pass)
 {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "conetrace/frame/gbuffer.h"
+
+namespace lrsm::test {
+
+struct SurfacePoint {
+    Vec3 position, normal;
+};
+
+/// A G-buffer of what `surface(x, y)` says; depth is -z of the position, as a camera at the origin looking along -z sees it.
+template <class Surface>
+GBuffer gbufferOf(int width, int height, const Surface& surface)
+{
+    GBuffer g;
+    g.width = width;
+    g.height = height;
+    g.position = g.geometricNormal = g.normal = g.albedo = Image<Vec3>(width, height);
+    g.depthLinear = Image<float>(width, height);
+    g.objectId = Image<std::uint32_t>(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const SurfacePoint at = surface(x, y);
+            const std::size_t pixel = g.position.index(x, y);
+            if (at.normal == Vec3(0.0f)) continue;
+            g.position.texels[pixel] = at.position;
+            g.normal.texels[pixel] = g.geometricNormal.texels[pixel] = at.normal;
+            g.depthLinear.texels[pixel] = -at.position.z;
+            g.objectId.texels[pixel] = 1;
+        }
+    return g;
+}
+
+}  // namespace lrsm::test
