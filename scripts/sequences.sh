@@ -8,8 +8,10 @@ out=${1:-out/sequences}
 lrsm=${LRSM:-build/release/apps/lrsm}
 scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}")
 frames="--frames 0:${FRAMES:-12} --fps 24 --size ${SIZE:-160x90} --quiet"
-cases=${CASES:-"moving-sun moving-dragons"}
+cases=${CASES:-"moving-sun moving-dragons moving-out"}
 mkdir -p "$out"
+cp docs/examples/sequences/*.json "$out" # a view's files are looked for beside it
+ln -sf "$scenes/sponza.glb" "$scenes/dragon_lowres.glb" "$out"
 
 # A row of the table: choice, and of the irradiance F, the truth's, F_e, V, J, RMSE of the middle frame.
 row() {
@@ -27,7 +29,7 @@ compare() {
 }
 
 for case in $cases; do
-    view="$scenes/sponza.glb --view docs/examples/sequences/$case.json"
+    view=$out/$case.json
     # The truth, and a second one: the floor of what can be told.
     for seed in 0 1; do
         folder=$out/$case/truth; [ $seed = 0 ] || folder=$out/$case/truth-of-seed-$seed
@@ -40,7 +42,7 @@ for case in $cases; do
         "$lrsm" render $view $frames "$@" -o "$out/$case/$name"
         compare "$case" "$name" "$title"
     }
-    for preset in ${CHOICES:-literal fast balanced fine vct}; do render "$preset" "\`$preset\`" --preset "$preset"; done
+    for preset in ${CHOICES:-literal paper fast balanced fine vct}; do render "$preset" "\`$preset\`" --preset "$preset"; done
     [ -z "${CHOICES:-}" ] || continue
     render union "\`balanced\`, \`--sequence-bounds union\`" --sequence-bounds union
     for snap in none sphere; do render "snap-$snap" "\`balanced\`, \`rsm_snap=$snap\`" --set rsm_snap=$snap; done
