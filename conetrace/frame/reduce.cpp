@@ -114,7 +114,8 @@ ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor)
     // Pixels that stand alone, row by row.
     std::vector<std::vector<std::uint32_t>> alone(std::size_t(gbuffer.height));
     forCovered(gbuffer, [&](int x, int y) {
-        if (blockWeights(gbuffer, blocks, x, y).sum() < kLeastBlockWeight) alone[std::size_t(y)].push_back(static_cast<std::uint32_t>(gbuffer.position.index(x, y)));
+        if (blockWeights(gbuffer, blocks, x, y).sum() < kLeastBlockWeight)
+            alone[std::size_t(y)].push_back(static_cast<std::uint32_t>(gbuffer.position.index(x, y)));
     });
     for (const std::vector<std::uint32_t>& row : alone) {
         out.source.insert(out.source.end(), row.begin(), row.end());

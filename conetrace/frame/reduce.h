@@ -41,8 +41,8 @@ inline Counters countersOf(const ReducedGBuffer& reduced)
 ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor);
 
 /// Light gathered for `reduced` at each pixel of the G-buffer that it was made of: of the four blocks around a pixel those on its surface (same_surface.h), by
-/// bilinear weights that sum to 1. Bilinear fields on a plane are kept between the outermost blocks' pixels. Where directions alternate over 4x4 pixels, those that
-/// stand alone are averaged with their neighbours once they all have light.
+/// bilinear weights that sum to 1. Bilinear fields on a plane are kept between the outermost blocks' pixels. Where directions alternate over 4x4 pixels, those
+/// that stand alone are averaged with their neighbours once they all have light.
 Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GBuffer& gbuffer);
 
 }  // namespace lrsm

@@ -117,10 +117,10 @@ struct ConeSetSettings {
     int count = 6;               ///< diffuse cones, 1..256
     float apertureScale = 0.5f;  ///< traced aperture over the cone's own (60 degrees for the paper's six), (0, 2]
     Rotation rotation = Rotation::strata;
-    bool filter = true;    ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
-    int filterPasses = 2;  ///< wider passes after it (none without it), each twice as wide as the last, 0..3; less where walls are near
+    bool filter = true;     ///< geometry-aware 4x4 filter of the irradiance; meant for rotation != none
+    int filterPasses = 2;   ///< wider passes after it (none without it), each twice as wide as the last, 0..3; less where walls are near
     int gatherDivisor = 1;  ///< one pixel in a block of so many each way is gathered for, and lends the others its light, 1..4, power of two
-    int setsPerPixel = 1;  ///< cone sets of the 16 rotations averaged in each pixel, 1..16
+    int setsPerPixel = 1;   ///< cone sets of the 16 rotations averaged in each pixel, 1..16
     /// Those that run.
     int smoothingPasses() const { return filter ? filterPasses : 0; }
     bool operator==(const ConeSetSettings&) const = default;

@@ -214,9 +214,9 @@ void addConeRows(std::vector<SettingRow>& rows)
         {"filter_passes", "", "after it, if it is on: 3x3 taps 4, 8, 16 pixels apart on the same surface, less where other surfaces are near",
          "ours; paper: 0"},
         {0, 3}));
-    rows.push_back(whole<&Set::gatherDivisor>({"gather_divisor", "pixels", "edge of the blocks of which one pixel is gathered for; the others are joint bilaterally upsampled",
-                                               "ours; paper: 1"},
-                                              powersOfTwo(1, 4)));
+    rows.push_back(whole<&Set::gatherDivisor>(
+        {"gather_divisor", "pixels", "edge of the blocks of which one pixel is gathered for; the others are joint bilaterally upsampled", "ours; paper: 1"},
+        powersOfTwo(1, 4)));
     rows.push_back(whole<&Set::setsPerPixel>({"sets_per_pixel", "", "cone sets of the 16 rotations averaged in each pixel", "ours"}, {1, 16}));
 
     rows.push_back(real<&March::step>({"step", "sphere diameters", "step length", "ours; the paper gives none"}, above(0, 2)));
