@@ -150,7 +150,8 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
                             .rsms = world.rsms,
                             .opacity = world.opacity,
                             .lanes = options.lanes};
-    Gathered light = settings.cones.set.gatherDivisor == 1 ? gatherPixels(method, input, frame.gbuffer.height, log) : gatherBlocks(method, input, log);
+    Gathered light = settings.cones.set.gatherDivisor == 1 || !method.pixelByPixel ? gatherPixels(method, input, frame.gbuffer.height, log)
+                                                                                   : gatherBlocks(method, input, log);
     finish(frame, camera, settings, std::move(light), log);
     return frame;
 }

@@ -75,6 +75,12 @@ Words valuesOf(const SettingInfo& info, const Settings& base)
                                                                {"v_radius_scale", "0.5 1 2"},
                                                                {"rsm_level_bias", "1 0.5 0 -0.5 -1"},
                                                                {"rsm_min_level", "2 1 0"},
+                                                               {"rc_tile", "8 16 32 64"},
+                                                               {"rc_resolution", "8 16 32"},
+                                                               {"rc_radius", "0.75 1 1.5 2"},
+                                                               {"rc_min_cosine", "-1 0.5 0.8"},
+                                                               {"rc_min_pixels", "0 8"},
+                                                               {"rc_max", "4096 16384 65536"},
                                                                {"gaussian_table_size", "64 256 1024 4096"},
                                                                {"specular_aperture_degrees", "5 10 20"}};
     if (const auto found = numbers.find(info.key); found != numbers.end()) return split(found->second, " ");

@@ -51,7 +51,7 @@ Gathered gatherCaches(const GatherInput& input, PassLog& log)
 
 GatherMethod cachesMethod()
 {
-    return {.reads = {.bits = true, .mips = true}, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
+    return {.reads = {.bits = true, .mips = true}, .pixelByPixel = false, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
 }
 
 }  // namespace lrsm

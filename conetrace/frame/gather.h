@@ -67,6 +67,8 @@ struct WorldReads {
 /// One method, as the frame's switch (conetrace/render.cpp) knows it.
 struct GatherMethod {
     WorldReads reads;
+    /// Gathers for each pixel by itself, so that it may be given one a block (gather_divisor, conetrace/frame/reduce.h); else it is given all.
+    bool pixelByPixel = true;
     std::function<Gathered(const GatherInput&, PassLog&)> gather;
     /// How one pixel came about, as text; may be empty.
     std::function<std::string(const GatherInput&, int x, int y)> explain;

@@ -145,9 +145,6 @@ void validate(const Settings& settings)
         throw InputError("settings estimator=slab, layer_selection=centre",
                          "the slab estimator sums a partition of the layers; set layer_selection=touched and layer_overlap=0, or "
                          "estimator=paper");
-    if (settings.method == Method::caches && cones.set.gatherDivisor != 1)
-        throw InputError("settings method=caches, gather_divisor=" + std::to_string(cones.set.gatherDivisor),
-                         "caches are placed by what all pixels see; set gather_divisor=1 (rc_tile says how many pixels share a cache)");
 }
 
 std::vector<SettingInfo> describeSettings()

@@ -54,7 +54,7 @@ TEST_CASE("normal bins: a bin's middle lies in it, and bins cover the sphere", "
         CHECK(glm::dot(normalOfBin(normalBin(axis)), axis) > 0.98f);
 }
 
-TEST_CASE("normal axes: one normal is the first axis, and is no other's; normals at right angles are all three", "[caches]")
+TEST_CASE("normal axes: one normal is the first axis, and is no other's, and normals at right angles are all three", "[caches]")
 {
     const Vec3 normal = normalOfBin(37);
     const NormalAxes one = axesOf({{normal, 200}});
@@ -155,7 +155,7 @@ TEST_CASE("clusters: are as deep as a tile is wide, whatever the distance", "[ca
     CHECK(flat(10.05f) == 100);
 }
 
-TEST_CASE("clusters: small ones join the nearest of their axis; more than rc_max double the tile", "[caches]")
+TEST_CASE("clusters: small ones join the nearest of their axis, more than rc_max double the tile", "[caches]")
 {
     const GBuffer g = stairs(75, 41);
     const Camera camera;

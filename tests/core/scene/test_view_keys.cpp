@@ -38,7 +38,7 @@ Vec3 lastCorner(const Scene& scene, std::size_t corner)
 
 }  // namespace
 
-TEST_CASE("numbers follow their keys, linear in time, and hold at the ends; a key that leaves one out is none of its", "[scene][view]")
+TEST_CASE("numbers follow their keys, linear in time, and hold at the ends, and a key that leaves one out is none of its", "[scene][view]")
 {
     const std::string text = viewOf(R"("lights": [{"type": "spot", "target": [0, 0, 0], "keys": [{"time": 1, "position": [0, 2, 0], "intensity": 1},
         {"time": 2, "intensity": 5}, {"time": 3, "position": [4, 2, 8]}]}])");

@@ -242,9 +242,6 @@ TEST_CASE("settings: validate refuses what no assignment could have let in", "[s
     CHECK(refusal([&] { validate(s); }).empty());
     s.cones.gather.backface = static_cast<Backface>(7);
     CHECK(contains(refusal([&] { validate(s); }), "backface"));
-    s = preset("caches");
-    s.cones.set.gatherDivisor = 2;
-    CHECK(contains(refusal([&] { validate(s); }), "method=caches, gather_divisor=2"));
 }
 
 TEST_CASE("settings: every preset is valid, the literal one is the paper's reading", "[settings]")
