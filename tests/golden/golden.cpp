@@ -55,10 +55,10 @@ Json hashesOf(const Json& golden, int lanes)
 /// The first pass in the order of the data flow is the one to look at: what follows reads it.
 std::string firstDifference(const Json& golden, const Json& made)
 {
-    if (golden.value("scene_sha256", "") != made["scene_sha256"]) return "the scene as loaded";
+    if (golden.value("scene_sha256", "") != made["scene_sha256"].get<std::string>()) return "the scene as loaded";
     const Json expected = golden.value("passes", Json::object());
     for (const auto& [name, hash] : made["passes"].items())
-        if (!expected.contains(name) || expected[name] != hash) return "pass \"" + name + "\"";
+        if (!expected.contains(name) || expected[name].get<std::string>() != hash.get<std::string>()) return "pass \"" + name + "\"";
     return expected.size() == made["passes"].size() ? "" : "the list of passes";
 }
 
