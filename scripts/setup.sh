@@ -8,7 +8,7 @@ set -eu
 packages="g++ cmake ninja-build ccache
   libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools libtbb-dev libssl-dev libzip-dev
   libcli11-dev nlohmann-json3-dev libjs-chart.js
-  catch2 libbenchmark-dev librapidcheck-dev libboost-dev libmpfr-dev dpkg-dev"
+  catch2 libbenchmark-dev librapidcheck-dev libboost-dev libmpfr-dev dpkg-dev file"
 if [ "${1:-}" = "--ci" ]; then packages="$packages clang clang-format libclang-rt-dev libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri
   python3-numpy python3-jsonschema g++-aarch64-linux-gnu qemu-user"; fi
 if [ "${1:-}" = "--aarch64" ]; then packages="g++-aarch64-linux-gnu cmake ninja-build ccache qemu-user"; fi
