@@ -94,20 +94,14 @@ void keepVctMips(const PassOutput& output, std::size_t, Capture& capture)
     if (const auto* volume = output.as<RadianceVolume>()) mipsToBuffers(*volume, capture.buffers);
 }
 
-void keepClusters(const PassOutput& output, std::size_t, Capture& capture)
+/// What has a size of its own.
+template <class T>
+void keepShaped(const PassOutput& output, std::size_t, Capture& capture)
 {
-    const auto* clusters = output.as<PixelClusters>();
-    if (!clusters) return;
-    shapeBuffers(*clusters, capture.buffers);
-    toBuffers(*clusters, capture.buffers);
-}
-
-void keepPlaces(const PassOutput& output, std::size_t, Capture& capture)
-{
-    const auto* places = output.as<CachePlaces>();
-    if (!places) return;
-    shapeBuffers(*places, capture.buffers);
-    toBuffers(*places, capture.buffers);
+    const auto* made = output.as<T>();
+    if (!made) return;
+    shapeBuffers(*made, capture.buffers);
+    toBuffers(*made, capture.buffers);
 }
 
 void keepFilled(const PassOutput& output, std::size_t, Capture& capture)
@@ -208,9 +202,9 @@ const std::vector<PassRow> kRows = {
      .describe = describeCones, .record = keepCones, .rerun = rerunVctCones,
      .sameTexel = kReceivers},
     {.family = "rc clusters", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer"},
-     .describe = describeClusters, .record = keepClusters, .rerun = rerunClusters},
+     .describe = describeClusters, .record = keepShaped<PixelClusters>, .rerun = rerunClusters},
     {.family = "rc places", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer", "rc clusters"},
-     .describe = describePlaces, .record = keepPlaces, .rerun = rerunPlaces},
+     .describe = describePlaces, .record = keepShaped<CachePlaces>, .rerun = rerunPlaces},
     {.family = "rc fill", .stages = {"cones", "caches"}, .exists = ofCaches, .reads = {"tables", "rc places", "voxelize", "voxel mips", "lrsm"},
      .describe = describeFill, .record = keepFilled, .rerun = rerunFill},
     {.family = "rc convolve", .stages = {"caches"}, .exists = ofCaches, .reads = {"tables", "rc fill"},

@@ -79,6 +79,11 @@ std::string jsonText(const Json& json)
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json numberJson(double value)
+{
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
 Json vectorJson(const Vec3& v)
 {
     return {v.x, v.y, v.z};
@@ -110,7 +115,7 @@ Json countersJson(const Counters& counters)
     Json json = Json::object();
     for (const Counter& counter : counters) {
         const bool whole = counter.value == std::floor(counter.value) && std::abs(counter.value) < 0x1p53;
-        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : std::isfinite(counter.value) ? Json(counter.value) : Json();
+        json[counter.name] = whole ? Json(static_cast<std::int64_t>(counter.value)) : numberJson(counter.value);
     }
     return json;
 }

@@ -14,6 +14,8 @@ namespace lrsm {
 /// Indented, ending in a newline; bytes that are no UTF-8 (file names may hold any) become U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& json);
 
+/// JSON has no infinity and no NaN: null.
+nlohmann::ordered_json numberJson(double value);
 nlohmann::ordered_json vectorJson(const Vec3& v);
 nlohmann::ordered_json vectorJson(const glm::dvec3& v);
 /// null where there is none.

@@ -99,40 +99,43 @@ Image<Rgb8> errorPicture(const Image<Vec3>& test, const Image<Vec3>& reference, 
     return signedFalseColor(error, kErrorLimit);
 }
 
+/// Seconds; where the files do not say, its number.
+double timeOfFrame(const SequenceFiles& files, int frame)
+{
+    const auto time = files.times.find(frame);
+    return time == files.times.end() ? double(frame) : time->second;
+}
+
 Json momentJson(int frame, double time, const MomentMetrics& m)
 {
-    const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
     return {{"frame", frame},
             {"time", time},
-            {"mean_test", finite(m.meanTest)},
-            {"mean_reference", finite(m.meanReference)},
-            {"rmse_over_mean", finite(m.rmse)},
-            {"f", finite(m.flicker)},
-            {"f_reference", finite(m.flickerReference)},
-            {"fe", finite(m.flickerOfError)},
-            {"jump", finite(m.jump)}};
+            {"mean_test", numberJson(m.meanTest)},
+            {"mean_reference", numberJson(m.meanReference)},
+            {"rmse_over_mean", numberJson(m.rmse)},
+            {"f", numberJson(m.flicker)},
+            {"f_reference", numberJson(m.flickerReference)},
+            {"fe", numberJson(m.flickerOfError)},
+            {"jump", numberJson(m.jump)}};
 }
 
 Json layerJson(const SequenceSection& section, const SequenceFiles& test)
 {
     const SequenceMetrics& m = section.metrics;
-    const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
     Json json = {{"layer", section.layer},
                  {"mean_reference", m.meanReference},
-                 {"f", finite(m.flicker)},
-                 {"f_reference", finite(m.flickerReference)},
-                 {"fe", finite(m.flickerOfError)},
+                 {"f", numberJson(m.flicker)},
+                 {"f_reference", numberJson(m.flickerReference)},
+                 {"fe", numberJson(m.flickerOfError)},
                  {"v", m.dance ? Json(*m.dance) : Json()},
                  {"still_share", m.stillShare},
-                 {"j", finite(m.jump)},
+                 {"j", numberJson(m.jump)},
                  {"followed_share", m.followedShare},
                  {"worst_frame", section.frames[m.worstFlicker]},
                  {"worst_jump_into", section.frames[m.worstJump]},
                  {"frames", Json::array()}};
-    for (std::size_t t = 0; t < section.frames.size(); ++t) {
-        const auto time = test.times.find(section.frames[t]);
-        json["frames"].push_back(momentJson(section.frames[t], time == test.times.end() ? double(section.frames[t]) : time->second, m.moments[t]));
-    }
+    for (std::size_t t = 0; t < section.frames.size(); ++t)
+        json["frames"].push_back(momentJson(section.frames[t], timeOfFrame(test, section.frames[t]), m.moments[t]));
     return json;
 }
 
@@ -182,10 +185,9 @@ void addPictures(const SequenceComparison& options, const SequenceFiles& test, c
             const Image<Vec3> x = rgbLayer(pair.test, layer, pair.testPath), r = rgbLayer(pair.reference, layer, pair.referencePath);
             if (t == 0) stops[k] = options.exposureStops ? *options.exposureStops : automaticExposure(r);
             const double mean = section.metrics.meanReference;
-            const auto time = test.times.find(frames[t]);
             const Image<Vec3> smallX = shrunk(x, kShownWidth), smallR = shrunk(r, kShownWidth);
-            section.shown.push_back({frames[t], time == test.times.end() ? double(frames[t]) : time->second, encodePng(tonemap(smallX, stops[k])),
-                                     encodePng(tonemap(smallR, stops[k])), encodePng(errorPicture(smallX, smallR, mean))});
+            section.shown.push_back({frames[t], timeOfFrame(test, frames[t]), encodePng(tonemap(smallX, stops[k])), encodePng(tonemap(smallR, stops[k])),
+                                     encodePng(errorPicture(smallX, smallR, mean))});
             if (section.metrics.worstFlicker != t) continue;
             const std::vector<std::byte> error = encodePng(errorPicture(x, r, mean));
             folder.write(section.layer + ".worst.test.png", encodePng(tonemap(x, stops[k])));

@@ -16,12 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::pair<RowKind, const char*> kKinds[] = {
     {RowKind::preset, "preset"}, {RowKind::axis, "axis"}, {RowKind::search, "search"}, {RowKind::pathTracer, "path_tracer"}};
 
-/// JSON has no infinity and no NaN.
-Json numberJson(double value)
-{
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 /// NaN for null.
 double numberIn(const JsonReader& in)
 {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 
 namespace lrsm {
 namespace {
@@ -64,23 +63,21 @@ void pick(const Image<T>& from, const std::vector<std::uint32_t>& source, int wi
     for (std::size_t i = 0; i < source.size(); ++i) to.texels[i] = from.texels[source[i]];
 }
 
+/// Of a picture of the full size where `values` is one.
 template <class T>
-Image<T> upsampleImage(const Image<T>& values, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
+Image<T> fullSize(const Image<T>& values, const GBuffer& gbuffer)
 {
-    if (values.empty()) return {};
-    const Blocks blocks{gbuffer.width, gbuffer.height, reduced.divisor};
-    Image<T> out(gbuffer.width, gbuffer.height);
-    forCovered(gbuffer, [&](int x, int y) {
-        const BlockWeights blend = blockWeights(gbuffer, blocks, x, y);
-        const float total = blend.sum();
-        if (total < kLeastBlockWeight) return;
-        T sum{};
-        for (std::size_t k = 0; k < 4; ++k)
-            if (blend.weight[k] > 0.0f) sum += blend.weight[k] * values.texels[blend.block[k]];
-        out.at(x, y) = sum / total;
-    });
-    for (std::size_t i = reduced.blockCount(); i < reduced.source.size(); ++i) out.texels[reduced.source[i]] = values.texels[i];
-    return out;
+    return values.empty() ? Image<T>() : Image<T>(gbuffer.width, gbuffer.height);
+}
+
+template <class T>
+void blend(const Image<T>& values, const BlockWeights& weights, float total, std::size_t pixel, Image<T>& out)
+{
+    if (values.empty()) return;
+    T sum{};
+    for (std::size_t k = 0; k < 4; ++k)
+        if (weights.weight[k] > 0.0f) sum += weights.weight[k] * values.texels[weights.block[k]];
+    out.texels[pixel] = sum / total;
 }
 
 /// Pixels that stand alone have one rotation each: averaged with what is around them on their surface, blocks' pixels among it.
@@ -139,10 +136,30 @@ ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor)
 
 Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
 {
+    const Blocks blocks{gbuffer.width, gbuffer.height, reduced.divisor};
     Gathered out;
-    out.irradiance = upsampleImage(light.irradiance, reduced, gbuffer);
-    out.specular = upsampleImage(light.specular, reduced, gbuffer);
-    out.opacity = upsampleImage(light.opacity, reduced, gbuffer);
+    out.irradiance = fullSize(light.irradiance, gbuffer);
+    out.specular = fullSize(light.specular, gbuffer);
+    out.opacity = fullSize(light.opacity, gbuffer);
+
+    // What blocks speak for.
+    forCovered(gbuffer, [&](int x, int y) {
+        const BlockWeights weights = blockWeights(gbuffer, blocks, x, y);
+        const float total = weights.sum();
+        if (total < kLeastBlockWeight) return;
+        const std::size_t pixel = gbuffer.position.index(x, y);
+        blend(light.irradiance, weights, total, pixel, out.irradiance);
+        blend(light.specular, weights, total, pixel, out.specular);
+        blend(light.opacity, weights, total, pixel, out.opacity);
+    });
+
+    // What stands alone.
+    const auto copyAlone = [&](const auto& values, auto& to) {
+        for (std::size_t i = reduced.blockCount(); i < reduced.source.size() && !values.empty(); ++i) to.texels[reduced.source[i]] = values.texels[i];
+    };
+    copyAlone(light.irradiance, out.irradiance);
+    copyAlone(light.specular, out.specular);
+    copyAlone(light.opacity, out.opacity);
     out.filter4x4 = light.filter4x4;
     if (light.filter4x4) filterAlone(out.irradiance, reduced, gbuffer);
     return out;

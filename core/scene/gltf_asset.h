@@ -98,7 +98,7 @@ struct Asset {
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     std::vector<Material> materials;  ///< the last one is glTF's default material
-    std::vector<Texture> textures;    ///< images still empty
+    std::vector<Texture> textures;    ///< images and mips by openGltf; empty until then
     std::vector<int> textureImage;    ///< index into `images` for each texture, -1: none
     std::vector<EncodedImage> images;
     std::vector<LocalLight> lights;

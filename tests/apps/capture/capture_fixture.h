@@ -2,10 +2,12 @@
 
 #include "apps/capture/capture_files.h"
 #include "apps/capture/record.h"
+#include "apps/capture/rerun.h"
 #include "conetrace/render.h"
 #include "core/base/output_folder.h"
 #include "core/scene/builtin_scenes.h"
 
+#include "catch.h"
 #include "scratch.h"
 
 #include <map>
@@ -73,6 +75,20 @@ inline Capture writtenAndRead(const Capture& capture, const ScratchFolder& scrat
     writeCapture(folder, capture);
     folder.commit();
     return readCapture(scratch.path("capture"));
+}
+
+/// Each pass, run on the capture's own buffers, makes its bytes again.
+inline void checkRunsAnew(const Capture& capture)
+{
+    for (const CapturedPass& pass : capture.passes) {
+        CAPTURE(pass.name);
+        const Rerun rerun = rerunPass(capture, pass.name);
+        CHECK(rerun.why.empty());
+        for (const Buffer& made : rerun.outputs) {
+            CAPTURE(made.name);
+            CHECK(made.bytes == capture.at(made.name).bytes);
+        }
+    }
 }
 
 }  // namespace lrsm::test

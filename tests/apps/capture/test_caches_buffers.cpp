@@ -61,15 +61,7 @@ TEST_CASE("caches buffers: through files and back every pass has the hash that t
     CHECK(hashOf(filledFromCapture(capture)) == expected["rc fill"]);
     CHECK(hashOf(atlasFromCapture(capture)) == expected["rc convolve"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["rc gather"]);
-    for (const CapturedPass& pass : capture.passes) {
-        CAPTURE(pass.name);
-        const Rerun rerun = rerunPass(capture, pass.name);
-        CHECK(rerun.why.empty());
-        for (const Buffer& made : rerun.outputs) {
-            CAPTURE(made.name);
-            CHECK(made.bytes == capture.at(made.name).bytes);
-        }
-    }
+    checkRunsAnew(capture);
 }
 
 TEST_CASE("caches buffers: lists that point outside are refused in one line", "[capture][caches]")

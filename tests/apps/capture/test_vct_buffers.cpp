@@ -60,15 +60,7 @@ TEST_CASE("vct buffers: through files and back every pass has the hash that the 
     volume.faces.clear();
     CHECK(hashOf(volume) == expected["vct inject"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["vct cones"]);
-    for (const CapturedPass& pass : capture.passes) {
-        CAPTURE(pass.name);
-        const Rerun rerun = rerunPass(capture, pass.name);
-        CHECK(rerun.why.empty());
-        for (const Buffer& made : rerun.outputs) {
-            CAPTURE(made.name);
-            CHECK(made.bytes == capture.at(made.name).bytes);
-        }
-    }
+    checkRunsAnew(capture);
 }
 
 TEST_CASE("vct buffers: a dense texel is the volume's, and lies where its voxel lies", "[capture][vct]")
