@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 
 namespace lrsm {
 namespace {
@@ -74,6 +75,16 @@ void filterAlone(Image<Vec3>& irradiance, const ReducedGBuffer& reduced, const G
 }
 
 }  // namespace
+
+ReducedGBuffer everyPixel(const GBuffer& gbuffer)
+{
+    ReducedGBuffer all;
+    all.gbuffer = gbuffer;
+    all.blockRows = gbuffer.height;
+    all.source.resize(gbuffer.objectId.texels.size());
+    std::iota(all.source.begin(), all.source.end(), 0u);
+    return all;
+}
 
 ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor)
 {

@@ -26,7 +26,7 @@ Vec3 irradianceByLights(const IsmWorld& world, const Vec3& position, const Vec3&
     for (std::size_t i = interleaved ? first : 0; i < lights.size(); i += step) {
         const VirtualLight& light = lights[i];
         const float geometry = vplGeometry(vplNear(world.vpl, light.area), light.position - position, normal, light.normal());
-        if (geometry > 0.0f && litByMap(world, i, position)) sum += light.intensity * geometry;
+        if (geometry > 0.0f && litByMap(world, i, position, normal)) sum += light.intensity * geometry;
     }
     return sum * (float(step) / world.lights.preExposure);
 }
@@ -44,7 +44,7 @@ Vec3 lobeByLights(const IsmWorld& world, std::size_t pixel)
         const VirtualLight& light = world.lights.lights[i];
         const Vec3 toLight = light.position - position;
         const float d2 = std::max(glm::dot(toLight, toLight), kLeastDistance2), facing = -glm::dot(light.normal(), toLight);
-        if (!(facing > 0.0f && glm::dot(normal, toLight) > 0.0f) || !litByMap(world, i, position)) continue;
+        if (!(facing > 0.0f && glm::dot(normal, toLight) > 0.0f) || !litByMap(world, i, position, normal)) continue;
         const float distance = std::sqrt(d2);
         const VplNear near = vplNear(world.vpl, light.area);
         sum += light.intensity * (lobe.ofCosine(glm::dot(mirror, toLight) / distance) * std::min(near.most, facing / (distance * (d2 + near.softening))));

@@ -17,14 +17,21 @@ struct IsmWorld {
     const VplLobeIntegral* lobe = nullptr;  ///< where the scene has a specular part
 };
 
-/// Does the light's map leave the point lit? By the texel that it is in; its own depth less ism_bias.
-inline bool litByMap(const IsmWorld& world, std::size_t light, const Vec3& p)
+/// Does the light's map leave the surface lit? By the texel that it is in, where it may lie ism_bias behind, and by as much more as its own plane falls away
+/// from the light within kSlopeTexels: a texel's depth is that of its nearest point.
+inline constexpr float kSlopeTexels = 1.0f, kMostSlope = 16.0f;
+inline bool litByMap(const IsmWorld& world, std::size_t light, const Vec3& position, const Vec3& normal)
 {
     const int n = world.maps.resolution;
-    const MapPlace place = placeInMap(world.lights.lights[light], p, n);
+    const VirtualLight& from = world.lights.lights[light];
+    const MapPlace place = placeInMap(from, position, n);
     const int column = std::clamp(static_cast<int>(place.u), 0, n - 1), row = std::clamp(static_cast<int>(place.v), 0, n - 1);
     const float stored = world.maps.depth[light * world.maps.texels() + std::size_t(row * n + column)];
-    return stored >= 1.0f || place.distance / world.maps.range <= stored + world.settings.bias;
+    if (stored >= 1.0f) return true;
+    const float cosine = std::max(glm::dot(normal, from.position - position) / place.distance, 1.0f / kMostSlope);
+    const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine, texelAngle = (1.0f + place.z) * (2.0f / float(n));
+    const float bias = world.settings.bias * world.maps.range + kSlopeTexels * place.distance * texelAngle * slope;
+    return place.distance <= stored * world.maps.range + bias;
 }
 
 /// Irradiance by every 16th of the lights from `first` on, times 16; or, `interleaved` false, by all. W/m^2.

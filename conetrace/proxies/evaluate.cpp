@@ -198,6 +198,19 @@ LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSu
     return {Vec3(sums), sums.w};
 }
 
+float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays)
+{
+    const CellLight& light = cells.lights[cell];
+    const Vec3 toCell = light.centroid - surface.position;
+    const float d2 = std::max(glm::dot(toCell, toCell), kLeastDistance2), distance = std::sqrt(d2);
+    const float cosine = std::max(0.0f, glm::dot(surface.normal, toCell) / distance);
+    const float byArea = light.intensity(-toCell / distance).w * cosine / (d2 + light.litArea / kPi);
+    // A quarter of flux and area are in `mean`.
+    const float meanRadiance = 4.0f * (light.mean.x + light.mean.y + light.mean.z) / light.litArea;
+    const float byLight = (irradiance.x + irradiance.y + irradiance.z) / meanRadiance;
+    return std::max(kLeastChance, 1.0f - fastExp2(-kLog2E * rays * std::max(byArea, byLight) / kPi));
+}
+
 ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int y)
 {
     const ProxyCells& cells = world.cells;
@@ -207,10 +220,14 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
 
     // Eq. 5 and 6.
     ProxyPixel out;
+    float rays = 0.0f;
+    for (std::size_t k = 0; k < 4; ++k)
+        if (weights.weight[k] > 0.0f) rays += weights.weight[k] * float(world.lists.rays[weights.block[k]]);
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight) {
         if (!(cells.lights[cell].litArea > 0.0f)) return;
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
         const Vec3 light = near ? irradianceByProxies(cells, cell, surface, world.vpl) : irradianceByHarmonics(cells, cell, surface, world.vpl);
+        if (world.settings.cellWeight == ProxyCellWeight::chance) weight /= chanceOfMeeting(cells, cell, surface, light, rays);
         out.irradiance += weight * light;
         ++out.cells;
         if (near) out.proxies += 4 * (cells.litEnd[cell] - cells.first[cell]);

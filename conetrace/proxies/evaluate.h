@@ -75,6 +75,12 @@ inline bool isNear(const ProxyCells& cells, std::uint32_t cell, const Vec3& posi
 Vec3 irradianceByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 Vec3 irradianceByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 
+/// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its
+/// proxies by harmonics, but no less than its light says: irradiance over pi times the mean radiance of those that shine. A cell that is listed over its chance
+/// to be is right in the mean (Horvitz and Thompson 1952), so that small cells, of which rays miss most, lose no light (pp_cell_weight).
+float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
+inline constexpr float kLeastChance = 1e-6f;
+
 /// Sums over solid angles: radiance by w W, and w W, for the weight w of Eq. 7 and the solid angle W = a cos' / (d^2 + r^2) of a proxy, lit or not, above the
 /// surface's horizon. Their quotient is the mean radiance over the part of the lobe that sees proxies.
 struct LobeSum {

@@ -22,15 +22,19 @@ VisibilityLists filterVisibility(const VisibilityLists& lists, const GBuffer& gb
             for (int column = 0; column < blocks.columns(); ++column) {
                 const std::size_t block = y * std::size_t(blocks.columns()) + std::size_t(column), pixel = blocks.pixel(column, row);
                 const int left = std::max(0, column - radius), right = std::min(blocks.columns() - 1, column + radius);
+                std::uint32_t rays = 0;
                 for (int j = top; j <= bottom && gbuffer.covered(pixel); ++j)
                     for (int i = left; i <= right; ++i) {
                         const std::size_t neighbour = blocks.pixel(i, j);
                         if (!gbuffer.covered(neighbour) || !lendsVisibility(gbuffer, pixel, neighbour)) continue;
-                        for (const std::uint32_t cell : lists.of(std::size_t(j) * std::size_t(blocks.columns()) + std::size_t(i))) seen.add(cell);
+                        const std::size_t other = std::size_t(j) * std::size_t(blocks.columns()) + std::size_t(i);
+                        for (const std::uint32_t cell : lists.of(other)) seen.add(cell);
+                        rays += lists.rays[other];
                     }
                 seen.moveTo(out.cells);
                 out.first.push_back(static_cast<std::uint32_t>(out.cells.size()));
                 out.opacity.push_back(lists.opacity[block]);
+                out.rays.push_back(rays);
             }
         }
     });

@@ -3,25 +3,9 @@
 #include "conetrace/proxies/explain.h"
 #include "conetrace/proxies/memory.h"
 
-#include <numeric>
 #include <optional>
 
 namespace lrsm {
-namespace {
-
-/// All pixels, as if they were blocks.
-ReducedGBuffer everyPixel(const GBuffer& gbuffer)
-{
-    ReducedGBuffer all;
-    all.gbuffer = gbuffer;
-    all.blockRows = gbuffer.height;
-    all.source.resize(gbuffer.objectId.texels.size());
-    std::iota(all.source.begin(), all.source.end(), 0u);
-    return all;
-}
-
-}  // namespace
-
 ProxyCells buildProxyCells(const GatherInput& input, PassLog& log)
 {
     const Settings& settings = input.settings;
@@ -64,8 +48,6 @@ Gathered gatherProxies(const GatherInput& input, PassLog& log)
     const ReducedGBuffer reduced =
         reduces ? log.run("pp reduce", kPicturePass, [&] { return reduceGBuffer(input.gbuffer, settings.gatherDivisor); }) : everyPixel(input.gbuffer);
     const Gathered light = log.run("pp gather", kPicturePass, [&] { return gatherFromCells(world, reduced, input.needs); });
-    log.show("pp gather", cells);
-    log.show("pp gather", seen);
     return reduces ? log.run("pp upsample", kPicturePass, [&] { return upsample(light, reduced, input.gbuffer); }) : light;
 }
 

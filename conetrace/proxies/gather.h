@@ -19,8 +19,7 @@ struct ProxyVisibility {
 /// The passes "pp march" and, where there is a filter, "pp filter".
 ProxyVisibility seeCells(const GatherInput& input, const ProxyCells& cells, PassLog& log);
 
-/// The passes above, "pp gather" and, with pp_gather_divisor above 1, "pp reduce" before it and "pp upsample" after it. Whoever watches the log is shown the
-/// ProxyCells and the ProxyVisibility under "pp gather" too.
+/// The passes above, "pp gather" and, with pp_gather_divisor above 1, "pp reduce" before it and "pp upsample" after it.
 Gathered gatherProxies(const GatherInput& input, PassLog& log);
 
 /// The line of the frame's switch.

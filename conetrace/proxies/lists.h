@@ -19,8 +19,8 @@ struct VisibilityLists {
     int divisor = 1;                   ///< edge of a block, pixels
     std::vector<std::uint32_t> first;  ///< list of block b: cells[first[b]] .. cells[first[b + 1] - 1]
     std::vector<std::uint32_t> cells;
-    std::vector<float> opacity;  ///< of each block's pixel: part of its diffuse shadow rays that met a disc
-    std::uint64_t rays = 0;
+    std::vector<float> opacity;       ///< of each block's pixel: part of its diffuse shadow rays that met a disc
+    std::vector<std::uint32_t> rays;  ///< diffuse shadow rays that a block's list is of; of a filtered one those of all lists joined
 
     std::span<const std::uint32_t> of(std::size_t block) const { return std::span(cells).subspan(first[block], first[block + 1] - first[block]); }
     std::size_t size() const { return opacity.size(); }
@@ -33,11 +33,12 @@ void forEachArray(const VisibilityLists& lists, Visit&& visit)
     visitAll(lists.first);
     visitAll(lists.cells);
     visitAll(lists.opacity);
+    visitAll(lists.rays);
 }
 
 inline Counters countersOf(const VisibilityLists& lists)
 {
-    return {{"marched_pixels", double(lists.size())}, {"listed_cells", double(lists.cells.size())}, {"shadow_rays", double(lists.rays)}};
+    return {{"marched_pixels", double(lists.size())}, {"listed_cells", double(lists.cells.size())}};
 }
 
 /// A set of cells that is filled and emptied again and again; comes out in order.

@@ -39,19 +39,19 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
             out.first = {0};
             for (int column = 0; column < blocks.columns(); ++column) {
                 const std::size_t pixel = blocks.pixel(column, int(row));
-                std::uint64_t rays = 0, met = 0;
+                std::uint32_t rays = 0, met = 0;
                 if (g.covered(pixel)) {
                     const Vec3 origin = rayStart(world, pixel);
                     forShadowRays(world, pixel, column, int(row), [&](const Vec3& direction, bool diffuse) {
                         const std::uint32_t cell = cellMet(world.cells, origin, direction);
                         if (cell != kNoCell) seen.add(cell);
-                        ++out.rays;
-                        rays += diffuse ? 1 : 0;
-                        met += diffuse && cell != kNoCell ? 1 : 0;
+                        rays += diffuse ? 1u : 0u;
+                        met += diffuse && cell != kNoCell ? 1u : 0u;
                     });
                     seen.moveTo(out.cells);
                 }
                 out.first.push_back(static_cast<std::uint32_t>(out.cells.size()));
+                out.rays.push_back(rays);
                 out.opacity.push_back(rays > 0 ? float(met) / float(rays) : 0.0f);
             }
         }

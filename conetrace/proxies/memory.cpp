@@ -22,7 +22,8 @@ MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid)
     const std::size_t quads = found ? std::size_t(counterSum(found->counters, "quads")) : most;
     ProxyCells like;
     like.half = settings.storage == Storage::gpu;
-    const std::size_t proxyGpu = 16 + (like.half ? 8u : 16u), tables = (2 * grid.count() + 1) * sizeof(std::uint32_t) + grid.count() * (sizeof(CellLight) + sizeof(Aabb));
+    const std::size_t proxyGpu = 16 + (like.half ? 8u : 16u),
+                      tables = (2 * grid.count() + 1) * sizeof(std::uint32_t) + grid.count() * (sizeof(CellLight) + sizeof(Aabb));
     return {.structure = "proxies",
             .pass = "pp cells",
             .detail = std::string(found ? "" : "about ") + std::to_string(settings.count) + " in " + std::to_string(grid.size.x) + "x" +

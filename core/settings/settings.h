@@ -227,6 +227,7 @@ struct VplSettings {
 };
 
 enum class ProxyHash { position, index };    ///< what Russian roulette draws from: the triangle's place, or its number
+enum class ProxyCellWeight { chance, one };  ///< of a listed cell: over the chance that a ray meets it, or as it is
 enum class ProxyLobeNorm { visible, lobe };  ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
 
 /// Voxelized point proxies with a visibility filter.
@@ -234,13 +235,14 @@ struct ProxySettings {
     int count = 65536;  ///< proxies in the scene's reach, 1..2^22
     ProxyHash hash = ProxyHash::position;
     float radius = 2.0f;    ///< of a disc that occludes, over that of the surface a proxy stands for, (0, 8]
-    int grid = 16;          ///< cells along the longest side, 1..256
+    int grid = 24;          ///< cells along the longest side, 1..256
     int rays = 64;          ///< shadow rays a marched pixel, 1..256
     int lobeRays = 16;      ///< more within the specular lobe, 0..256
     int marchDivisor = 4;   ///< one pixel in a block of so many each way is marched for, 1..16, power of two
     int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
     int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
-    float range = 2.0f;     ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
+    ProxyCellWeight cellWeight = ProxyCellWeight::chance;
+    float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
     ProxyLobeNorm lobeNorm = ProxyLobeNorm::visible;
     Storage storage = Storage::gpu;
     HalfRounding halfRounding = HalfRounding::d3d;
@@ -257,7 +259,7 @@ struct IsmSettings {
     int points = 8192;    ///< drawn into a map, 1..2^20
     IsmSampling sampling = IsmSampling::importance;
     IsmFill fill = IsmFill::pullPush;
-    float bias = 0.02f;      ///< of depth, over the diagonal of the scene's reach, [0, 1]
+    float bias = 0.01f;      ///< of depth, over the diagonal of the scene's reach, [0, 1]
     bool interleave = true;  ///< a pixel takes a 16th of the lights, and the 4x4 filter averages
     Storage storage = Storage::gpu;
     bool operator==(const IsmSettings&) const = default;

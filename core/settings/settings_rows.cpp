@@ -335,6 +335,10 @@ void addProxyRows(std::vector<SettingRow>& rows)
         powersOfTwo(1, 8)));
     rows.push_back(whole<&P::filterRadius>(
         {"pp_filter_radius", "marched pixels", "m = n of Eq. 4, the visibility filter: 3 for a window of 7x7; 0: none", "[P] Sec. 4: 3"}, {0, 8}));
+    rows.push_back(choice<&P::cellWeight>(
+        {"pp_cell_weight", "", "a listed cell counts over the chance that one of the list's rays meets it, so that missed ones lose no light; or as it is",
+         "ours; [P] Eq. 5: one"},
+        {"chance", "one"}));
     rows.push_back(real<&P::range>(
         {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
         {0, 1e6f}));

@@ -45,6 +45,7 @@ VisibilityLists randomLists(const GBuffer& g, bool equal = false)
         lists.cells.insert(lists.cells.end(), one.begin(), one.end());
         lists.first.push_back(std::uint32_t(lists.cells.size()));
         lists.opacity.push_back(0.5f);
+        lists.rays.push_back(64);
     }
     return lists;
 }
@@ -82,6 +83,7 @@ TEST_CASE("visibility filter: Eq. 4 against a union in sets; each list is in its
         for (int column = 0; column < blocks.columns(); ++column) {
             const std::size_t block = std::size_t(row * blocks.columns() + column), pixel = blocks.pixel(column, row);
             std::set<std::uint32_t> expected;
+            std::uint32_t rays = 0;
             for (int j = -radius; j <= radius && g.covered(pixel); ++j)
                 for (int i = -radius; i <= radius; ++i) {
                     if (row + j < 0 || row + j >= blocks.rows() || column + i < 0 || column + i >= blocks.columns()) continue;
@@ -92,7 +94,9 @@ TEST_CASE("visibility filter: Eq. 4 against a union in sets; each list is in its
                     if (!same) continue;
                     const auto list = lists.of(std::size_t((row + j) * blocks.columns() + column + i));
                     expected.insert(list.begin(), list.end());
+                    rays += 64;
                 }
+            REQUIRE(filtered.rays[block] == rays);
             const auto list = filtered.of(block);
             REQUIRE(std::vector<std::uint32_t>(list.begin(), list.end()) == std::vector<std::uint32_t>(expected.begin(), expected.end()));
             if (g.covered(pixel))
