@@ -1,7 +1,7 @@
 #pragma once
 
-#include "conetrace/frame/gather.h"
 #include "apps/capture/capture.h"
+#include "conetrace/frame/gather.h"
 
 namespace lrsm {
 

@@ -185,11 +185,11 @@ bool comparesShadows(const Settings& settings)
 }
 bool filters(const Settings& settings)
 {
-    return ofIsm(settings) ? settings.ism.interleave : settings.cones.set.filter && !ofProxies(settings);
+    return filtersIrradiance(settings);
 }
 bool smooths(const Settings& settings)
 {
-    return filters(settings) && settings.cones.set.filterPasses > 0;
+    return filters(settings) && settings.cones.set.smoothingPasses() > 0;
 }
 
 Families readForShadows(const Settings& settings)

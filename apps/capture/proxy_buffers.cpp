@@ -26,6 +26,8 @@ void addLists(Catalogue& out, const DescribedFrame& frame, const std::string& na
             tolerances::kLists);
     out.add(name + "_cells", Dtype::u4, {count}, {"entry"}, {}, {"hash (Eq. 1) of a cell that " + which + ", rising", "", ""}, tolerances::kLists);
     out.add(name + "_opacity", Dtype::f4, {count}, {"block"}, {}, {"part of the pixel's own diffuse rays that met a disc", "", ""}, tolerances::kConeOpacity);
+    out.add(name + "_lobe_opacity", Dtype::f4, {count}, {"block"}, {}, {"the same of its rays in the specular lobe; 1 where it has none", "", ""},
+            tolerances::kConeOpacity);
     out.add(name + "_rays", Dtype::u4, {count}, {"block"}, {}, {"diffuse rays that the list is of", "", ""}, tolerances::kLists);
 }
 
@@ -83,8 +85,8 @@ void describeProxies(Catalogue& out, const DescribedFrame& frame, std::size_t)
 void describeProxyLight(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const auto count = std::size_t(frame.settings.proxies.count);
-    out.add("pp.radiance", frame.settings.proxies.storage == Storage::gpu ? Dtype::f2 : Dtype::f4, {count}, {"proxy"}, kRgb, {"radiance times pre_exposure, of the side that reflects most", "", kRadianceUnit},
-            tolerances::kPoints);
+    out.add("pp.radiance", frame.settings.proxies.storage == Storage::gpu ? Dtype::f2 : Dtype::f4, {count}, {"proxy"}, kRgb,
+            {"radiance times pre_exposure, of the side that reflects most", "", kRadianceUnit}, tolerances::kPoints);
     out.add("pp.lit_normal", Dtype::f4, {count}, {"proxy"}, kXyz, {"geometric normal of that side", kWorldSpace, ""}, tolerances::kPoints);
 }
 
@@ -202,6 +204,7 @@ void toBuffers(const VisibilityLists& lists, const std::string& name, std::vecto
     fit(buffers, name + "_first", lists.first);
     fit(buffers, name + "_cells", lists.cells);
     fit(buffers, name + "_opacity", lists.opacity);
+    fit(buffers, name + "_lobe_opacity", lists.lobeOpacity);
     fit(buffers, name + "_rays", lists.rays);
 }
 
@@ -271,6 +274,7 @@ VisibilityLists listsFromCapture(const Capture& capture, const std::string& name
     lists.first = copyFrom<std::uint32_t>(capture, name + "_first", Dtype::u4, count + 1);
     lists.cells = allOf<std::uint32_t>(capture, name + "_cells", Dtype::u4);
     lists.opacity = copyFrom<float>(capture, name + "_opacity", Dtype::f4, count);
+    lists.lobeOpacity = copyFrom<float>(capture, name + "_lobe_opacity", Dtype::f4, count);
     lists.rays = copyFrom<std::uint32_t>(capture, name + "_rays", Dtype::u4, count);
     refuseUnsorted(lists.first, lists.cells.size(), name + "_first");
     refuseBeyond(lists.cells, cells - 1, name + "_cells");

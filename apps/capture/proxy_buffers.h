@@ -5,8 +5,8 @@
 #include "conetrace/ism/gather.h"
 #include "conetrace/proxies/gather.h"
 
-/// The buffers of method=proxies and method=ism. How many there are of what is known only when it is made: until then buffers are described with the most that can be,
-/// or none. What comes back has the very bits that went in.
+/// The buffers of method=proxies and method=ism. How many there are of what is known only when it is made: until then buffers are described with the most that
+/// can be, or none. What comes back has the very bits that went in.
 namespace lrsm {
 
 inline constexpr char kMarched[] = "pp.march", kFilteredLists[] = "pp.filter";  ///< first part of the names of a VisibilityLists' buffers

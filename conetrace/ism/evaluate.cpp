@@ -68,7 +68,6 @@ Gathered gatherFromLights(const IsmWorld& world, const Requirements& needs)
             });
         };
     });
-    out.filter4x4 = world.settings.interleave;
     out.counters = {{"lit_pixels", double(counts.pixels)}};
     return out;
 }

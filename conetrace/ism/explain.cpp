@@ -1,5 +1,6 @@
 #include "conetrace/ism/explain.h"
 
+#include "conetrace/frame/cones.h"
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/ism/gather.h"
 

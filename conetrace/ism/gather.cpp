@@ -29,7 +29,9 @@ Gathered gatherIsm(const GatherInput& input, PassLog& log)
                          .settings = input.settings.ism,
                          .vpl = input.settings.vpl,
                          .lobe = lobe ? &*lobe : nullptr};
-    return log.run("ism gather", kPicturePass, [&] { return gatherFromLights(world, input.needs); });
+    Gathered gathered = log.run("ism gather", kPicturePass, [&] { return gatherFromLights(world, input.needs); });
+    gathered.filter4x4 = input.settings.ism.interleave && input.settings.cones.set.filter;
+    return gathered;
 }
 
 GatherMethod ismMethod()

@@ -1,5 +1,6 @@
 #include "conetrace/ism/maps.h"
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 
@@ -167,6 +168,7 @@ ImperfectMaps renderMaps(const VirtualLights& lights, const PointProxies& points
     maps.range = glm::length(reach.extent());
     maps.unorm = ism.storage == Storage::gpu;
     maps.pointRadius = drawn > 0 ? std::sqrt(points.area * (float(points.size()) / float(drawn)) / kPi) : 0.0f;
+    requireMemory(lights.lights.size() * maps.texels() * sizeof(float), "imperfect shadow maps", "lower ism_lights or ism_resolution");
     maps.depth.assign(lights.lights.size() * maps.texels(), 1.0f);
     // Twice over, so that a window never wraps.
     std::vector<std::uint32_t> order = shuffled(points.size());

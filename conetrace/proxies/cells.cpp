@@ -1,5 +1,6 @@
 #include "conetrace/proxies/cells.h"
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <algorithm>
@@ -111,8 +112,9 @@ CellGrid makeCellGrid(const Aabb& reach, int cells)
 {
     const float longest = reach.longestSide(), margin = 0.5f * kGridMargin * longest;
     CellGrid grid;
+    if (!(longest > 0.0f)) return grid;
     grid.origin = reach.min - margin;
-    grid.cellSize = longest > 0.0f ? (longest + 2.0f * margin) / float(cells) : 1.0f;
+    grid.cellSize = (longest + 2.0f * margin) / float(cells);
     grid.size = glm::clamp(IVec3(glm::ceil((reach.extent() + 2.0f * margin) / grid.cellSize)), IVec3(1), IVec3(cells));
     return grid;
 }
@@ -136,6 +138,7 @@ ProxyCells sortProxies(const Scene& scene, const PointProxies& proxies, const Pr
 
     // Sort, and count quads a cell.
     const std::size_t count = cells.grid.count();
+    requireMemory(count * (sizeof(CellLight) + sizeof(Aabb) + 2 * sizeof(std::uint32_t)), "cells of proxies", "lower pp_grid");
     const Keyed sorted = sortedKeys(cells.grid, proxies, light);
     const CellRanges ranges = rangesOf(sorted, count);
     cells.first.resize(count + 1);

@@ -76,6 +76,16 @@ struct GatherCounts {
     }
 };
 
+/// What blocks have, by their lists' weights.
+template <class T>
+float blendOf(const std::vector<T>& values, const ListWeights& weights)
+{
+    float sum = 0.0f;
+    for (std::size_t k = 0; k < 4; ++k)
+        if (weights.weight[k] > 0.0f) sum += weights.weight[k] * float(values[weights.block[k]]);
+    return sum;
+}
+
 LitSurface surfaceAt(const GatherWorld& world, std::size_t pixel)
 {
     const GBuffer& g = world.gbuffer;
@@ -85,7 +95,7 @@ LitSurface surfaceAt(const GatherWorld& world, std::size_t pixel)
     return surface;
 }
 
-/// Eq. 7's sum over what is listed, over its own weights or over the whole lobe's.
+/// Eq. 7's sum over what is listed, over its own weights and times the part of the lobe that meets anything; or over the whole lobe's.
 Vec3 specularOf(const GatherWorld& world, const ListWeights& weights, const LitSurface& surface, std::size_t pixel)
 {
     if (!(glm::dot(surface.mirror, world.gbuffer.geometricNormal.texels[pixel]) > 0.0f)) return Vec3(0.0f);
@@ -98,8 +108,10 @@ Vec3 specularOf(const GatherWorld& world, const ListWeights& weights, const LitS
         sum.radiance += weight * own.radiance;
         sum.weight += weight * own.weight;
     });
-    const float all = world.settings.lobeNorm == ProxyLobeNorm::lobe ? (*world.lobe)(roughness) : sum.weight;
-    return all > 0.0f ? sum.radiance / (all * world.cells.preExposure) : Vec3(0.0f);
+    if (world.settings.lobeNorm == ProxyLobeNorm::lobe) return sum.radiance / ((*world.lobe)(roughness)*world.cells.preExposure);
+    if (!(sum.weight > 0.0f)) return Vec3(0.0f);
+    // Where the lobe looks out of the scene there is nothing to see.
+    return sum.radiance * (blendOf(world.lists.lobeOpacity, weights) / (sum.weight * world.cells.preExposure));
 }
 
 }  // namespace
@@ -220,9 +232,7 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
 
     // Eq. 5 and 6.
     ProxyPixel out;
-    float rays = 0.0f;
-    for (std::size_t k = 0; k < 4; ++k)
-        if (weights.weight[k] > 0.0f) rays += weights.weight[k] * float(world.lists.rays[weights.block[k]]);
+    const float rays = blendOf(world.lists.rays, weights);
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight) {
         if (!(cells.lights[cell].litArea > 0.0f)) return;
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
@@ -233,8 +243,7 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
         if (near) out.proxies += 4 * (cells.litEnd[cell] - cells.first[cell]);
     });
     out.irradiance /= cells.preExposure;
-    for (std::size_t k = 0; k < 4; ++k)
-        if (weights.weight[k] > 0.0f) out.opacity += weights.weight[k] * world.lists.opacity[weights.block[k]];
+    out.opacity = blendOf(world.lists.opacity, weights);
 
     if (specular && world.gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) out.specular = specularOf(world, weights, surface, pixel);
     return out;

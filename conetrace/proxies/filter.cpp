@@ -34,6 +34,7 @@ VisibilityLists filterVisibility(const VisibilityLists& lists, const GBuffer& gb
                 seen.moveTo(out.cells);
                 out.first.push_back(static_cast<std::uint32_t>(out.cells.size()));
                 out.opacity.push_back(lists.opacity[block]);
+                out.lobeOpacity.push_back(lists.lobeOpacity[block]);
                 out.rays.push_back(rays);
             }
         }

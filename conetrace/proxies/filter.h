@@ -20,7 +20,7 @@ inline bool lendsVisibility(const GBuffer& g, std::size_t pixel, std::size_t nei
            glm::dot(g.normal.texels[pixel], g.normal.texels[neighbour]) > kFilterCosine;
 }
 
-/// V'_p(x, y): the union of V_p(x + i, y + j) over |i|, |j| <= radius where delta_d delta_n = 1. Opacities stay.
+/// V'_p(x, y): the union of V_p(x + i, y + j) over |i|, |j| <= radius where delta_d delta_n = 1. Opacities stay the pixel's own.
 VisibilityLists filterVisibility(const VisibilityLists& lists, const GBuffer& gbuffer, int radius, std::size_t cells);
 
 }  // namespace lrsm

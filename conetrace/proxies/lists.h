@@ -20,6 +20,7 @@ struct VisibilityLists {
     std::vector<std::uint32_t> first;  ///< list of block b: cells[first[b]] .. cells[first[b + 1] - 1]
     std::vector<std::uint32_t> cells;
     std::vector<float> opacity;       ///< of each block's pixel: part of its diffuse shadow rays that met a disc
+    std::vector<float> lobeOpacity;   ///< the same of its rays in the specular lobe; 1 where it has none
     std::vector<std::uint32_t> rays;  ///< diffuse shadow rays that a block's list is of; of a filtered one those of all lists joined
 
     std::span<const std::uint32_t> of(std::size_t block) const { return std::span(cells).subspan(first[block], first[block + 1] - first[block]); }
@@ -33,6 +34,7 @@ void forEachArray(const VisibilityLists& lists, Visit&& visit)
     visitAll(lists.first);
     visitAll(lists.cells);
     visitAll(lists.opacity);
+    visitAll(lists.lobeOpacity);
     visitAll(lists.rays);
 }
 

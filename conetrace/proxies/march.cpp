@@ -8,6 +8,16 @@ namespace {
 constexpr std::size_t kRowsPerTask = 2;
 constexpr double kGolden = 0.61803398874989484820, kTwoPi = 6.28318530717958647693;
 
+struct RayCount {
+    std::uint32_t rays = 0, met = 0;
+    void add(bool meets)
+    {
+        ++rays;
+        met += meets ? 1u : 0u;
+    }
+    float partMet(float ofNone) const { return rays > 0 ? float(met) / float(rays) : ofNone; }
+};
+
 }  // namespace
 
 ConeSet shadowRays(const ProxySettings& settings)
@@ -39,20 +49,20 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
             out.first = {0};
             for (int column = 0; column < blocks.columns(); ++column) {
                 const std::size_t pixel = blocks.pixel(column, int(row));
-                std::uint32_t rays = 0, met = 0;
+                RayCount diffuse, lobe;
                 if (g.covered(pixel)) {
                     const Vec3 origin = rayStart(world, pixel);
-                    forShadowRays(world, pixel, column, int(row), [&](const Vec3& direction, bool diffuse) {
+                    forShadowRays(world, pixel, column, int(row), [&](const Vec3& direction, bool isDiffuse) {
                         const std::uint32_t cell = cellMet(world.cells, origin, direction);
                         if (cell != kNoCell) seen.add(cell);
-                        rays += diffuse ? 1u : 0u;
-                        met += diffuse && cell != kNoCell ? 1u : 0u;
+                        (isDiffuse ? diffuse : lobe).add(cell != kNoCell);
                     });
                     seen.moveTo(out.cells);
                 }
                 out.first.push_back(static_cast<std::uint32_t>(out.cells.size()));
-                out.rays.push_back(rays);
-                out.opacity.push_back(rays > 0 ? float(met) / float(rays) : 0.0f);
+                out.opacity.push_back(diffuse.partMet(0.0f));
+                out.lobeOpacity.push_back(lobe.partMet(1.0f));
+                out.rays.push_back(diffuse.rays);
             }
         }
     });

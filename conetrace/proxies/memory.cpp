@@ -40,7 +40,7 @@ MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, cons
     const std::size_t count = std::size_t(blocks.columns()) * std::size_t(blocks.rows());
     const PassReport* found = reportOf(question, pass);
     const std::size_t cells = found ? std::size_t(counterSum(found->counters, "listed_cells")) : question.unknowns == Unknowns::least ? 0 : count * mostACell;
-    const std::size_t bytes = (count + 1 + cells) * sizeof(std::uint32_t) + count * sizeof(float);
+    const std::size_t bytes = (count + 1 + cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t));
     return {.structure = structure,
             .pass = pass,
             .detail = std::string(found ? "" : "up to ") + std::to_string(cells) + " cells",

@@ -342,10 +342,11 @@ void addProxyRows(std::vector<SettingRow>& rows)
     rows.push_back(real<&P::range>(
         {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
         {0, 1e6f}));
-    rows.push_back(choice<&P::lobeNorm>(
-        {"pp_lobe_norm", "", "a specular sum over the weights of the proxies that a pixel sees ([P]'s effective number), or over the whole lobe",
-         "[P] Sec. 3.3: visible"},
-        {"visible", "lobe"}));
+    rows.push_back(choice<&P::lobeNorm>({"pp_lobe_norm", "",
+                                         "a specular sum over the weights of the proxies that a pixel sees ([P]'s effective number), times the part of the "
+                                         "lobe that meets any; or over the whole lobe",
+                                         "[P] Sec. 3.3: visible"},
+                                        {"visible", "lobe"}));
     rows.push_back(choice<&P::storage>({"pp_storage", "", "radiance of proxies in half or in float32", "[P]: none given"}, {"gpu", "float32"}));
     rows.push_back(choice<&P::halfRounding>({"pp_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
 

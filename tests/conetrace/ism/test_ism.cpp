@@ -10,15 +10,12 @@
 #include "catch.h"
 
 #include <cstdio>
-#include <numbers>
 #include <numeric>
 
 using namespace lrsm;
 using namespace lrsm::test;
 
 namespace {
-
-constexpr double kPiDouble = std::numbers::pi;
 
 Settings smallIsm()
 {
@@ -104,7 +101,8 @@ TEST_CASE("imperfect maps: unfilled, a texel holds the nearest of the points who
         const double z = glm::dot(w, glm::dvec3(light.frame[2]));
         if (z <= 1e-3 || distance <= 1.5 * double(points.radius())) continue;
         // The half vector of the paraboloid: (x, y) / (1 + z).
-        const double u = (glm::dot(w, glm::dvec3(light.frame[0])) / (1.0 + z) * 0.5 + 0.5) * kSize, v2 = (glm::dot(w, glm::dvec3(light.frame[1])) / (1.0 + z) * 0.5 + 0.5) * kSize;
+        const double u = (glm::dot(w, glm::dvec3(light.frame[0])) / (1.0 + z) * 0.5 + 0.5) * kSize,
+                     v2 = (glm::dot(w, glm::dvec3(light.frame[1])) / (1.0 + z) * 0.5 + 0.5) * kSize;
         if (std::abs(u - std::round(u)) < 1e-4 || std::abs(v2 - std::round(v2)) < 1e-4) ++onBorder;
         double& texel = expected[std::size_t(int(v2) * kSize + int(u))];
         texel = std::min(texel, distance);
@@ -112,7 +110,8 @@ TEST_CASE("imperfect maps: unfilled, a texel holds the nearest of the points who
     std::size_t holes = 0, wrong = 0;
     for (std::size_t i = 0; i < map.size(); ++i) {
         holes += map[i].distance == kInfinity ? 1 : 0;
-        const bool same = map[i].distance == kInfinity ? expected[i] == double(kInfinity) : std::abs(double(map[i].distance) - expected[i]) < 1e-4 * expected[i];
+        const bool same =
+            map[i].distance == kInfinity ? expected[i] == double(kInfinity) : std::abs(double(map[i].distance) - expected[i]) < 1e-4 * expected[i];
         wrong += same ? 0 : 1;
     }
     CHECK(wrong <= 2 * onBorder);
@@ -123,7 +122,8 @@ TEST_CASE("imperfect maps: unfilled, a texel holds the nearest of the points who
 TEST_CASE("imperfect maps: filling is never nearer than the nearest point, fills only within reach of one, and hides what lies behind", "[ism]")
 {
     // A floor below the light, and beneath it another one that shines through its gaps.
-    const Scene scene = quadScene({{Vec3(-2, 0, 2), Vec3(2, 0, 2), Vec3(2, 0, -2), Vec3(-2, 0, -2)}, {Vec3(-2, -2, 2), Vec3(2, -2, 2), Vec3(2, -2, -2), Vec3(-2, -2, -2)}});
+    const Scene scene =
+        quadScene({{Vec3(-2, 0, 2), Vec3(2, 0, 2), Vec3(2, 0, -2), Vec3(-2, 0, -2)}, {Vec3(-2, -2, 2), Vec3(2, -2, 2), Vec3(2, -2, -2), Vec3(-2, -2, -2)}});
     const PointProxies points = placeProxies(scene, {.count = 3000}, TextureFilter::trilinear);
     const VirtualLight light = lightAt(Vec3(0.013f, 1, 0.007f), Vec3(0, -1, 0));
     constexpr int kSize = 64;

@@ -45,6 +45,7 @@ VisibilityLists randomLists(const GBuffer& g, bool equal = false)
         lists.cells.insert(lists.cells.end(), one.begin(), one.end());
         lists.first.push_back(std::uint32_t(lists.cells.size()));
         lists.opacity.push_back(0.5f);
+        lists.lobeOpacity.push_back(1.0f);
         lists.rays.push_back(64);
     }
     return lists;
