@@ -2,6 +2,9 @@
 
 #include "apps/capture/capture.h"
 #include "core/base/errors.h"
+#include "core/base/formats.h"
+#include "core/base/math.h"
+#include "core/base/parallel.h"
 
 #include <algorithm>
 #include <cassert>
@@ -94,6 +97,20 @@ inline void refuseUnsorted(const std::vector<std::uint32_t>& values, std::size_t
 {
     refuseBeyond(values, most, name);
     if (!std::is_sorted(values.begin(), values.end())) throw InputError(name, "is not in order");
+}
+
+/// Texels of four channels, stored as halves or as float32.
+inline std::vector<Vec4> texelsOf(const Capture& capture, const std::string& name, std::size_t count)
+{
+    if (capture.at(name).dtype == Dtype::f4) return copyFrom<Vec4>(capture, name, Dtype::f4, count);
+    constexpr std::size_t kChannels = 4, kTexelsPerTask = std::size_t(1) << 16;
+    const auto halves = valuesOf<std::uint16_t>(capture, name, Dtype::f2, count * kChannels);
+    std::vector<Vec4> texels(count);
+    parallelFor(count, kTexelsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t c = 0; c < kChannels; ++c) texels[i][int(c)] = floatFromHalf(halves[i * kChannels + c]);
+    });
+    return texels;
 }
 
 }  // namespace lrsm

@@ -62,6 +62,7 @@ void rerunIsmLights(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunIsmMaps(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunIsmGather(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunFilter(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunSpecularFilter(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunSmooth(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunComposite(const Capture& inputs, std::size_t light, Rerun& made);
 

@@ -1,7 +1,7 @@
 #include "conetrace/ism/evaluate.h"
 
 #include "conetrace/frame/cones.h"
-#include "conetrace/frame/pixel_cones.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 
 namespace lrsm {

@@ -2,7 +2,7 @@
 
 #include "conetrace/frame/cones.h"
 #include "conetrace/frame/gather.h"
-#include "conetrace/frame/pixel_cones.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/proxies/lists.h"
 #include "conetrace/proxies/vpl.h"
 #include "conetrace/proxies/walk.h"
