@@ -32,13 +32,14 @@ set(allowed_apps/validate ${passes} core/report reference apps/common apps/valid
 set(allowed_apps/validate/equations ${passes} core/report apps/validate/equations)
 set(allowed_apps/validate/ladder ${passes} core/report reference apps/validate apps/validate/equations apps/validate/ladder)
 set(allowed_apps/validate/extremes ${passes} core/report apps/validate/equations apps/validate/extremes)
+set(allowed_apps/validate/vectors ${passes} core/report apps/capture apps/validate/equations apps/validate/vectors)
 set(allowed_apps/info ${passes} core/report apps/common apps/info)
 set(allowed_apps/sweep ${passes} core/imageio core/report reference apps/common apps/reference apps/sweep)
 set(allowed_apps/bench ${passes} core/report apps/common apps/sweep apps/bench)
 set(allowed_apps/tune ${passes} core/imageio core/report reference apps/common apps/sweep apps/info apps/tune)
-set(commands apps/capture apps/check apps/compare apps/reference apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes
+set(commands apps/capture apps/check apps/compare apps/reference apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes apps/validate/vectors
              apps/info apps/sweep apps/bench apps/tune)
-list(APPEND allowed_apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes) # the command; the libraries are targets
+list(APPEND allowed_apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes apps/validate/vectors) # the command; the libraries are targets
 set(allowed_apps ${passes} core/imageio core/report reference apps/common ${commands} apps)
 # The second implementation reads and writes arrays, and has nothing of the passes.
 set(allowed_tests/twin core/base core/settings core/scene apps/capture apps/check tests/twin catch.h scratch.h)
