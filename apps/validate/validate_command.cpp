@@ -118,6 +118,9 @@ int judgeResults(const ValidateArguments& options)
     std::vector<VectorSet> sets = readVectors(folder);
     if (!options.equation.empty()) keepEquation(sets, options.equation);
     const Judgement judgement = judgeFolder(sets, options.against);
+    if (judgement.count(OutputVerdict::missing) == judgement.outputs.size())
+        throw InputError(options.against, "holds no result; " + std::string(kVectorsFile) + " says under \"write\" what each is to be called: " +
+                                              givenFile(*judgement.outputs.front().output) + (judgement.notes.empty() ? "" : "; " + judgement.notes.front()));
 
     Json json = {{"version", LRSM_VERSION}};
     const ValidationPart part = describeJudgement(judgement, json["vectors"]);

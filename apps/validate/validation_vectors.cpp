@@ -39,6 +39,7 @@ ReportTable judgedForPeople(const Judgement& judgement)
 {
     ReportTable table{"", {"Eq.", "output", "values", "outside", "worst ULP", "mean ULP", "worst error", "mean error", "verdict", "worst at"}, {}};
     for (const JudgedOutput& o : judgement.outputs) {
+        if (o.verdict == OutputVerdict::missing) continue;
         const bool bad = o.verdict == OutputVerdict::wrong || o.verdict == OutputVerdict::unreadable;
         std::vector<std::string> row = {(bad ? "!" : "") + o.output->equation, o.output->exact.name};
         if (wasRead(o))
@@ -128,7 +129,7 @@ ValidationPart describeJudgement(const Judgement& judgement, Json& json)
         if (!o.note.empty() && o.verdict != OutputVerdict::missing) lines += o.note + "\n";
     }
     for (const std::string& note : judgement.notes) lines += "note: " + note + "\n";
-    if (const std::size_t missing = judgement.count(OutputVerdict::missing); missing && missing < judgement.outputs.size()) {
+    if (judgement.count(OutputVerdict::missing)) {
         std::vector<std::string> names;
         for (const JudgedOutput& o : judgement.outputs)
             if (o.verdict == OutputVerdict::missing) names.push_back(o.output->exact.name);

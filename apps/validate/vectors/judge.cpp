@@ -1,5 +1,6 @@
 #include "apps/validate/vectors/judge.h"
 
+#include "apps/validate/equations/check_equations.h"
 #include "apps/validate/vectors/vector_files.h"
 #include "core/base/errors.h"
 #include "core/base/text.h"
@@ -161,6 +162,9 @@ Judgement judgeFolder(const std::vector<VectorSet>& sets, const std::string& fol
             judgement.outputs.push_back(judgeFile(set, output, (fs::path(folder) / givenFile(output)).string()));
         }
     nameStrangers(names, judgement);
+    const std::vector<std::string> order = equationNames();
+    const auto place = [&](const JudgedOutput& o) { return std::find(order.begin(), order.end(), o.output->equation) - order.begin(); };
+    std::stable_sort(judgement.outputs.begin(), judgement.outputs.end(), [&](const JudgedOutput& a, const JudgedOutput& b) { return place(a) < place(b); });
     return judgement;
 }
 

@@ -29,7 +29,7 @@ struct JudgedOutput {
 };
 
 struct Judgement {
-    std::vector<JudgedOutput> outputs;  ///< in the sets' order
+    std::vector<JudgedOutput> outputs;  ///< in the paper's order
     std::vector<std::string> notes;     ///< of files that are of no output
 
     std::size_t count(OutputVerdict verdict) const;
