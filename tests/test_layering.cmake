@@ -42,7 +42,7 @@ set(commands apps/capture apps/check apps/compare apps/reference apps/validate a
 list(APPEND allowed_apps/validate apps/validate/equations apps/validate/ladder apps/validate/extremes apps/validate/vectors) # the command; the libraries are targets
 set(allowed_apps ${passes} core/imageio core/report reference apps/common ${commands} apps)
 # The second implementation reads and writes arrays, and has nothing of the passes.
-set(allowed_tests/twin core/base core/settings core/scene apps/capture apps/check tests/twin catch.h scratch.h)
+set(allowed_tests/twin core/base core/settings core/scene apps/capture apps/check apps/validate/vectors tests/twin catch.h scratch.h)
 set(folders ${passes} core/imageio core/report reference apps/common ${commands} apps tests/twin)
 
 # Libraries that one place alone may know: first part of the header, then where.

@@ -194,7 +194,8 @@ Command addValidate(CLI::App& program)
     parser->add_option("-o,--output", options->output, "folder for report.html, validate.json and CSV; they appear whole or not at all");
     parser->add_option("--equation", options->equation, "one equation alone: its number, or sec3, sec5, table1, fig7, base");
     parser->add_option("--vectors", options->vectors,
-                       "write inputs, exact results and the allowed error of each equation and elementary function into this folder (docs/vectors.md); with --against, read them there");
+                       "write inputs, exact results and the allowed error of each equation and elementary function into this folder (docs/vectors.md); with "
+                       "--against, read them there");
     parser->add_option("--against", options->against, "judge the results in this folder, computed elsewhere from the inputs of --vectors; 1 if one is wrong");
     parser->add_option("--junit", options->junit, "with --against: file for a JUnit report");
     parser->add_option("--samples", options->samples, "cone samples of the error ladder")->check(CLI::Range(1, 1000000))->capture_default_str();

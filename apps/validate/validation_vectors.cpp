@@ -25,7 +25,8 @@ std::string worstText(const JudgedOutput& o)
     std::string place;
     if (o.output->exact.perCase() > 1) place = ", value " + std::to_string(o.worstValue % o.output->exact.perCase());
     return caseText(*o.set, o.worstCase()) + place + ": exact " + exactNumber(exact) + ", given " + exactNumber(o.given) + ", off by " +
-           shortNumber(std::isnan(error) ? std::numeric_limits<double>::infinity() : error) + " where " + shortNumber(o.output->allowed[o.worstValue]) + " is allowed";
+           shortNumber(std::isnan(error) ? std::numeric_limits<double>::infinity() : error) + " where " + shortNumber(o.output->allowed[o.worstValue]) +
+           " is allowed";
 }
 
 /// "12 of 195 values are outside: case 17 ...".
@@ -43,8 +44,9 @@ ReportTable judgedForPeople(const Judgement& judgement)
         const bool bad = o.verdict == OutputVerdict::wrong || o.verdict == OutputVerdict::unreadable;
         std::vector<std::string> row = {(bad ? "!" : "") + o.output->equation, o.output->exact.name};
         if (wasRead(o))
-            row.insert(row.end(), {std::to_string(o.output->exact.values.size()), std::to_string(o.outside), shortNumber(o.worstUlp), shortNumber(o.meanUlp),
-                                   shortNumber(o.worst), shortNumber(o.mean), std::string(nameOf(o.verdict)), o.worst > 0.0 ? caseText(*o.set, o.worstCase()) : ""});
+            row.insert(row.end(),
+                       {std::to_string(o.output->exact.values.size()), std::to_string(o.outside), shortNumber(o.worstUlp), shortNumber(o.meanUlp),
+                        shortNumber(o.worst), shortNumber(o.mean), std::string(nameOf(o.verdict)), o.worst > 0.0 ? caseText(*o.set, o.worstCase()) : ""});
         else
             row.insert(row.end(), {"", "", "", "", "", "", std::string(nameOf(o.verdict)), ""});
         table.rows.push_back(std::move(row));
@@ -57,8 +59,8 @@ ReportTable judgedForPrograms(const Judgement& judgement)
     ReportTable table{"", {"equation", "output", "verdict", "values", "outside", "worst_ulp", "mean_ulp", "worst", "mean", "bound", "worst_input", "note"}, {}};
     for (const JudgedOutput& o : judgement.outputs)
         table.rows.push_back({o.output->equation, o.output->exact.name, std::string(nameOf(o.verdict)), std::to_string(o.output->exact.values.size()),
-                              std::to_string(o.outside), exactNumber(o.worstUlp), exactNumber(o.meanUlp), exactNumber(o.worst), exactNumber(o.mean), o.output->bound,
-                              wasRead(o) ? caseText(*o.set, o.worstCase()) : "", o.note});
+                              std::to_string(o.outside), exactNumber(o.worstUlp), exactNumber(o.meanUlp), exactNumber(o.worst), exactNumber(o.mean),
+                              o.output->bound, wasRead(o) ? caseText(*o.set, o.worstCase()) : "", o.note});
     return table;
 }
 
@@ -96,7 +98,8 @@ std::string equationTitle(const std::string& equation)
 
 std::string verdictText(const Judgement& judgement)
 {
-    const std::size_t ok = judgement.count(OutputVerdict::ok), wrong = judgement.count(OutputVerdict::wrong), unreadable = judgement.count(OutputVerdict::unreadable);
+    const std::size_t ok = judgement.count(OutputVerdict::ok), wrong = judgement.count(OutputVerdict::wrong),
+                      unreadable = judgement.count(OutputVerdict::unreadable);
     std::string text;
     if (wrong) {
         std::vector<std::string> titles;
@@ -104,7 +107,8 @@ std::string verdictText(const Judgement& judgement)
             if (const std::string title = equationTitle(o.output->equation);
                 o.verdict == OutputVerdict::wrong && std::find(titles.begin(), titles.end(), title) == titles.end())
                 titles.push_back(title);
-        text = "Vectors: WRONG: " + joined(titles) + "; " + std::to_string(wrong) + " of " + std::to_string(ok + wrong) + " outputs are outside what is allowed";
+        text =
+            "Vectors: WRONG: " + joined(titles) + "; " + std::to_string(wrong) + " of " + std::to_string(ok + wrong) + " outputs are outside what is allowed";
     } else if (ok) {
         text = "Vectors: all " + std::to_string(ok) + " outputs that can be read are within what is allowed";
     } else {

@@ -64,8 +64,8 @@ TEST_CASE("program: validate refuses what has no meaning in one line", "[apps][v
 {
     Sandbox box;
     for (const char* arguments : {"--equation 99", "--equation 12 cornell-box", "--only moments", "--extremes --equation 12", "--extremes --only no-such-case",
-                                  "no-such-scene", "--samples 0", "cornell-box --preset none",
-                                  "--junit j.xml", "--against nowhere", "--against .", "--vectors v cornell-box", "--vectors v --extremes", "--vectors v --junit j.xml"}) {
+                                  "no-such-scene", "--samples 0", "cornell-box --preset none", "--junit j.xml", "--against nowhere", "--against .",
+                                  "--vectors v cornell-box", "--vectors v --extremes", "--vectors v --junit j.xml"}) {
         const Outcome run = box.run(std::string("validate ") + arguments + " -o result");
         INFO(arguments);
         CHECK(run.code == 2);
@@ -90,12 +90,13 @@ TEST_CASE("program: the equations in NumPy go through validate --against, and a 
     CHECK(contains(fine.out, "within what is allowed"));
     CHECK(contains(readText(box.here() / "fine.xml"), "failures=\"0\" errors=\"0\""));
     // A folder of one's own; and one for each equation, in which a factor is lost.
-    const std::string folders = "import glob, os, shutil\nimport numpy as np\nos.mkdir('mine')\n"
-                                "for f in glob.glob('v/*.npy'):\n"
-                                "  if f.count('.') == 2: shutil.copy(f, 'mine')\n"
-                                "for e in range(1, 16):\n"
-                                "  shutil.copytree('mine', 'slip%d' % e)\n"
-                                "  for f in glob.glob('slip%d/eq%d.*.npy' % (e, e)): np.save(f, 0.5 * np.load(f))\n";
+    const std::string folders =
+        "import glob, os, shutil\nimport numpy as np\nos.mkdir('mine')\n"
+        "for f in glob.glob('v/*.npy'):\n"
+        "  if f.count('.') == 2: shutil.copy(f, 'mine')\n"
+        "for e in range(1, 16):\n"
+        "  shutil.copytree('mine', 'slip%d' % e)\n"
+        "  for f in glob.glob('slip%d/eq%d.*.npy' % (e, e)): np.save(f, 0.5 * np.load(f))\n";
     REQUIRE(runCommand(here + python + " -c \"" + folders + "\"").code == 0);
     for (int equation = 1; equation <= 15; ++equation) {
         const Outcome wrong = box.run("validate --against slip" + std::to_string(equation) + " --vectors v --quiet --junit wrong.xml");

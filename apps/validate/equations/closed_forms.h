@@ -19,9 +19,9 @@ inline long double reflectedRadiance(float rho, float lightRadiance, float nDotL
 /// Eq. 8: <nBar . v>, at least 0, of the premultiplied mean.
 inline long double normalTerm(const FilteredTexel& texel, const Vec3& v)
 {
-    const long double n = (static_cast<long double>(texel.normal.x) * v.x + static_cast<long double>(texel.normal.y) * v.y +
-                           static_cast<long double>(texel.normal.z) * v.z) /
-                          texel.normalAlpha;
+    const long double n =
+        (static_cast<long double>(texel.normal.x) * v.x + static_cast<long double>(texel.normal.y) * v.y + static_cast<long double>(texel.normal.z) * v.z) /
+        texel.normalAlpha;
     return std::max(n, 0.0L);
 }
 

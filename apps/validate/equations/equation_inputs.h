@@ -48,9 +48,12 @@ inline Window windowOf(const std::array<float, 4>& in)
 }
 inline SearchSpace<float, 4> windowSpace(float leastSigma)
 {
-    return {
-        {{{0.0f, 1.0f}, {leastSigma, 1.0f, Spacing::logarithmic}, {-9.0f, 9.0f}, {0x1p-20f, 2.0f, Spacing::logarithmic}}},
-        {{0.5f, 0.005f, 0.0f, 0.25f}, {0.0f, 0.1f, -1.0f, 0.1f}, {1.0f, 0.2f, 5.0f, 1.0f}, {0.3f, leastSigma * 16.0f, -5.25f, 0x1p-10f}, {0.7f, 1.0f, 0.0f, 0x1p-20f}}};
+    return {{{{0.0f, 1.0f}, {leastSigma, 1.0f, Spacing::logarithmic}, {-9.0f, 9.0f}, {0x1p-20f, 2.0f, Spacing::logarithmic}}},
+            {{0.5f, 0.005f, 0.0f, 0.25f},
+             {0.0f, 0.1f, -1.0f, 0.1f},
+             {1.0f, 0.2f, 5.0f, 1.0f},
+             {0.3f, leastSigma * 16.0f, -5.25f, 0x1p-10f},
+             {0.7f, 1.0f, 0.0f, 0x1p-20f}}};
 }
 
 /// Eq. 15: where the range begins, its width, twice delta over the width, and where z_c is, from just before the range to just behind.

@@ -107,8 +107,7 @@ void checkDecay(CheckRun& run)
              .domain = "ranges of 1e-3 .. 1 in [0, 2], delta up to half of it, z_c in and beside it",
              .bound = {"kDecayMaxError", double(kDecayMaxError)},
              .nanoseconds = run.time(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); })},
-            worst,
-            inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, zAtWorst}));
+            worst, inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, zAtWorst}));
 
     // The ends that do not decay: 1 up to and with the last float, 0 beyond; half-open where a neighbour begins.
     const auto ends = exhaust(4 * 5 * 2, [](std::uint64_t i) {

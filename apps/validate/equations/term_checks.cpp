@@ -71,7 +71,8 @@ void checkMoments(CheckRun& run)
             const long double exact = oracle::depthVariance(t);
             const DepthMoments raw = depthMoments(t, -kInfinity), floored = depthMoments(t);
             if (raw.negative != (raw.variance < 0.0f)) return 1.0;
-            return std::max(std::abs(static_cast<double>(raw.variance - exact)), std::abs(static_cast<double>(floored.variance - std::max(exact, oracle::kVarianceFloor))));
+            return std::max(std::abs(static_cast<double>(raw.variance - exact)),
+                            std::abs(static_cast<double>(floored.variance - std::max(exact, oracle::kVarianceFloor))));
         },
         403);
     run.add({.equation = "11",

@@ -10,9 +10,6 @@ namespace {
 /// What rounding the exact result to double takes, relative.
 constexpr double kRounding = 0x1p-53;
 
-/// What D3D11.3 asks of a GPU's log and exp.
-constexpr NamedBound kGpuMaxError{"2^-21", 0x1p-21};
-
 /// The exact result, from how far `value` is off.
 double exactFromError(double value, double error)
 {
@@ -25,8 +22,8 @@ double exactFromRelativeError(double value, double error)
 
 /// A function of one number. `evaluate` gives the result for each output.
 template <class T, class Evaluate>
-void addFunction(std::vector<VectorSet>& sets, std::vector<VectorOutput> outputs, const std::string& argument, const SearchSpace<T, 1>& space, const Evaluate& evaluate,
-                 std::uint32_t stream)
+void addFunction(std::vector<VectorSet>& sets, std::vector<VectorOutput> outputs, const std::string& argument, const SearchSpace<T, 1>& space,
+                 const Evaluate& evaluate, std::uint32_t stream)
 {
     const Dtype dtype = sizeof(T) == 8 ? Dtype::f8 : Dtype::f4;
     for (VectorOutput& output : outputs) output.exact.dtype = dtype;
@@ -36,8 +33,11 @@ void addFunction(std::vector<VectorSet>& sets, std::vector<VectorOutput> outputs
                                                  .inputs = {{argument, {}, "", "", dtype}},
                                                  .outputs = outputs,
                                                  .kinds = {}});
-    fillSet(
-        set, space, [&](const std::array<T, 1>& in) { return VectorCase{{{double(in[0])}}, evaluate(in[0])}; }, stream, {.typical = 128, .worst = 32, .search = 600});
+    fillSet(set, space,
+            [&](const std::array<T, 1>& in) {
+                return VectorCase{{{double(in[0])}}, evaluate(in[0])};
+            },
+            stream, {.typical = 128, .worst = 32, .search = 600});
 }
 
 void addFloats(std::vector<VectorSet>& sets)
@@ -71,7 +71,8 @@ void addDoubles(std::vector<VectorSet>& sets)
 {
     addFunction(
         sets, {outputOf("base", {"base.log2_double", {}, "", "log2(x), float64"}, {"kLog2MaxError", kLog2MaxError}, "absolute / max(1, |log2 x|)")}, "x",
-        SearchSpace<double, 1>{{{{0x1p-1000, 0x1p1000, Spacing::logarithmic}}}, {{0.70710678118654752440}, {1.0}, {0.5}, {2.0}, {1.0 + 0x1p-52}, {1.0 - 0x1p-53}}},
+        SearchSpace<double, 1>{{{{0x1p-1000, 0x1p1000, Spacing::logarithmic}}},
+                               {{0.70710678118654752440}, {1.0}, {0.5}, {2.0}, {1.0 + 0x1p-52}, {1.0 - 0x1p-53}}},
         [](double x) {
             const double exact = -oracle::log2Error(x, 0.0);
             return std::vector<VectorResult>{single(exact, kLog2MaxError * std::max(1.0, std::abs(exact)) + kRounding * std::abs(exact), log2Exact(x))};
@@ -85,7 +86,8 @@ void addDoubles(std::vector<VectorSet>& sets)
             return std::vector<VectorResult>{single(exact, (kExp2MaxError + 2.0 * kRounding) * exact, ours)};
         },
         1730);
-    const SearchSpace<double, 1> angles{{{{1e-9, 1e6, Spacing::signedLogarithmic}}}, {{0.78539816339744831}, {1.5707963267948966}, {3.1415926535897932}, {999999.5}}};
+    const SearchSpace<double, 1> angles{{{{1e-9, 1e6, Spacing::signedLogarithmic}}},
+                                        {{0.78539816339744831}, {1.5707963267948966}, {3.1415926535897932}, {999999.5}}};
     addFunction(
         sets, {outputOf("base", {"base.sin", {}, "", "sin of an angle in radians, float64"}, {"kSinCosMaxError", kSinCosMaxError})}, "angle", angles,
         [](double x) {
@@ -105,33 +107,34 @@ void addDoubles(std::vector<VectorSet>& sets)
 /// Functions of two numbers.
 void addPairs(std::vector<VectorSet>& sets)
 {
-    VectorSet& angle = sets.emplace_back(
-        VectorSet{.name = "arc_tangent",
-                  .meaning = "atan2(y, x), float64",
-                  .inputs = {{"y", {}, "", "", Dtype::f8}, {"x", {}, "", "", Dtype::f8}},
-                  .outputs = {outputOf("base", {"base.atan2", {}, "rad", "angle of (x, y) from the x axis, in [-pi, pi]", Dtype::f8}, {"kArcTangentMaxError", kArcTangentMaxError})},
-                  .kinds = {}});
-    fillSet(
-        angle, SearchSpace<double, 2>{{{{1e-9, 1e9, Spacing::signedLogarithmic}, {0.5, 2.0, Spacing::signedLogarithmic}}}, {{1.0, 1.0}, {-1.0, -1.0}, {0.0, 1.0}}},
-        [](const std::array<double, 2>& in) {
-            const double ours = arcTangent2(in[0], in[1]);
-            return VectorCase{{{in[0]}, {in[1]}},
-                              {single(exactFromError(ours, oracle::arcTangent2Error(in[0], in[1], ours)), kArcTangentMaxError + 4.0 * kRounding, ours)}};
-        },
-        1760, {.typical = 128, .worst = 32, .search = 600});
+    VectorSet& angle =
+        sets.emplace_back(VectorSet{.name = "arc_tangent",
+                                    .meaning = "atan2(y, x), float64",
+                                    .inputs = {{"y", {}, "", "", Dtype::f8}, {"x", {}, "", "", Dtype::f8}},
+                                    .outputs = {outputOf("base", {"base.atan2", {}, "rad", "angle of (x, y) from the x axis, in [-pi, pi]", Dtype::f8},
+                                                         {"kArcTangentMaxError", kArcTangentMaxError})},
+                                    .kinds = {}});
+    fillSet(angle,
+            SearchSpace<double, 2>{{{{1e-9, 1e9, Spacing::signedLogarithmic}, {0.5, 2.0, Spacing::signedLogarithmic}}}, {{1.0, 1.0}, {-1.0, -1.0}, {0.0, 1.0}}},
+            [](const std::array<double, 2>& in) {
+                const double ours = arcTangent2(in[0], in[1]);
+                return VectorCase{{{in[0]}, {in[1]}},
+                                  {single(exactFromError(ours, oracle::arcTangent2Error(in[0], in[1], ours)), kArcTangentMaxError + 4.0 * kRounding, ours)}};
+            },
+            1760, {.typical = 128, .worst = 32, .search = 600});
 
-    VectorSet& powers = sets.emplace_back(VectorSet{.name = "power",
-                                                    .meaning = "x^y, float64",
-                                                    .inputs = {{"x", {}, "", "", Dtype::f8}, {"y", {}, "", "", Dtype::f8}},
-                                                    .outputs = {outputOf("base", {"base.power", {}, "", "x^y", Dtype::f8}, {"kPowerMaxError", kPowerMaxError}, "relative")},
-                                                    .kinds = {}});
-    fillSet(
-        powers, SearchSpace<double, 2>{{{{1e-6, 1e6, Spacing::logarithmic}, {-5.0, 5.0}}}, {{1.0, 2.4}, {0.5, 2.0}}},
-        [](const std::array<double, 2>& in) {
-            const double ours = power(in[0], in[1]), exact = exactFromRelativeError(ours, oracle::powerRelativeError(in[0], in[1], ours));
-            return VectorCase{{{in[0]}, {in[1]}}, {single(exact, (kPowerMaxError + 2.0 * kRounding) * exact, ours)}};
-        },
-        1770, {.typical = 128, .worst = 32, .search = 600});
+    VectorSet& powers =
+        sets.emplace_back(VectorSet{.name = "power",
+                                    .meaning = "x^y, float64",
+                                    .inputs = {{"x", {}, "", "", Dtype::f8}, {"y", {}, "", "", Dtype::f8}},
+                                    .outputs = {outputOf("base", {"base.power", {}, "", "x^y", Dtype::f8}, {"kPowerMaxError", kPowerMaxError}, "relative")},
+                                    .kinds = {}});
+    fillSet(powers, SearchSpace<double, 2>{{{{1e-6, 1e6, Spacing::logarithmic}, {-5.0, 5.0}}}, {{1.0, 2.4}, {0.5, 2.0}}},
+            [](const std::array<double, 2>& in) {
+                const double ours = power(in[0], in[1]), exact = exactFromRelativeError(ours, oracle::powerRelativeError(in[0], in[1], ours));
+                return VectorCase{{{in[0]}, {in[1]}}, {single(exact, (kPowerMaxError + 2.0 * kRounding) * exact, ours)}};
+            },
+            1770, {.typical = 128, .worst = 32, .search = 600});
 }
 
 }  // namespace

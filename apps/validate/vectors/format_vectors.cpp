@@ -17,19 +17,22 @@ void addHalf(std::vector<VectorSet>& sets)
         .meaning = "float32 to half, as a value",
         .inputs = {{"x", {}, "", ""}},
         .outputs = {outputOf("table1", {"table1.half_toward_zero", {}, "", "rounded toward zero, 65504 beyond it (D3D11; half_rounding=d3d)"}, {"exact", 0.0}),
-                    outputOf("table1", {"table1.half_nearest_even", {}, "", "rounded to the nearest, ties to even; x is below 65520 (half_rounding=nearest_even)"}, {"exact", 0.0})},
+                    outputOf("table1",
+                             {"table1.half_nearest_even", {}, "", "rounded to the nearest, ties to even; x is below 65520 (half_rounding=nearest_even)"},
+                             {"exact", 0.0})},
         .kinds = {}});
     SearchSpace<float, 1> space{{{{0x1p-26f, 65519.0f, Spacing::signedLogarithmic}}}, {{0.0f}}};
     for (const float x : {65504.0f, 1.0f, 0x1p-14f, 0x1p-24f, 0x1p-25f, 2049.0f / 2048.0f, 2051.0f / 2048.0f, 1.5f * 0x1p-24f})
         for (const int ulps : {-1, 0, 1}) space.planted.insert(space.planted.end(), {{moveByUlps(x, ulps)}, {-moveByUlps(x, ulps)}});
-    fillSet(
-        set, space,
-        [](const std::array<float, 1>& in) {
-            ConversionCounts counts;
-            const auto of = [&](HalfRounding rounding) { return single(oracle::half(double(in[0]), rounding), 0.0, double(roundToHalf(in[0], rounding, counts))); };
-            return VectorCase{{{double(in[0])}}, {of(HalfRounding::d3d), of(HalfRounding::nearestEven)}};
-        },
-        1600, {.typical = 256, .worst = 0, .search = 32});
+    fillSet(set, space,
+            [](const std::array<float, 1>& in) {
+                ConversionCounts counts;
+                const auto of = [&](HalfRounding rounding) {
+                    return single(oracle::half(double(in[0]), rounding), 0.0, double(roundToHalf(in[0], rounding, counts)));
+                };
+                return VectorCase{{{double(in[0])}}, {of(HalfRounding::d3d), of(HalfRounding::nearestEven)}};
+            },
+            1600, {.typical = 256, .worst = 0, .search = 32});
 
     VectorSet& decoded = sets.emplace_back(VectorSet{.name = "half_bits",
                                                      .meaning = "half to float32",
@@ -47,14 +50,14 @@ void addHalf(std::vector<VectorSet>& sets)
 template <class Encode>
 void addUnorm(std::vector<VectorSet>& sets, const std::string& name, int largest, const Encode& encode)
 {
-    VectorSet& set = sets.emplace_back(
-        VectorSet{.name = name,
-                  .meaning = "float32 to UNORM: clamped to 0 .. 1, scaled, to the nearest code",
-                  .inputs = {{"x", {}, "", ""}},
-                  .outputs = {outputOf("table1",
-                                       {"table1." + name, {}, "codes", "the code; the exact result is not rounded to one", largest > 255 ? Dtype::u2 : Dtype::u1},
-                                       kUnormMaxError, "codes")},
-                  .kinds = {}});
+    VectorSet& set = sets.emplace_back(VectorSet{
+        .name = name,
+        .meaning = "float32 to UNORM: clamped to 0 .. 1, scaled, to the nearest code",
+        .inputs = {{"x", {}, "", ""}},
+        .outputs = {outputOf("table1",
+                             {"table1." + name, {}, "codes", "the code; the exact result is not rounded to one", largest > 255 ? Dtype::u2 : Dtype::u1},
+                             kUnormMaxError, "codes")},
+        .kinds = {}});
     SearchSpace<float, 1> space{{{{-0.5f, 1.5f}}}, {{0.0f}, {1.0f}, {-1.0f}, {2.0f}, {1e30f}}};
     for (const int code : {0, 1, largest / 2, largest - 1})
         for (const int ulps : {-2, -1, 1, 2}) space.planted.push_back({moveByUlps(static_cast<float>((code + 0.5) / largest), ulps)});

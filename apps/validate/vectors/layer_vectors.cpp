@@ -1,4 +1,5 @@
-// Sec. 4.2 and 4.3: what a layer's texel holds (Eq. 6, 8, 10, 11, 14), which layer a texel is in (Eq. 13), the sum over layers (Eq. 14) and its weights (Eq. 15).
+// Sec. 4.2 and 4.3: what a layer's texel holds (Eq. 6, 8, 10, 11, 14), which layer a texel is in (Eq. 13), the sum over layers (Eq. 14) and its weights (Eq.
+// 15).
 #include "apps/validate/equations/equation_inputs.h"
 #include "apps/validate/equations/layer_model.h"
 #include "apps/validate/equations/synthetic_maps.h"
@@ -65,70 +66,71 @@ VectorCase layerTexel(int draw)
                          {double(ours.radiance[0]), double(ours.radiance[1]), double(ours.radiance[2])}),
                     many({exact.normal[0], exact.normal[1], exact.normal[2]}, double(kLayerNormalMaxError),
                          {double(ours.normal[0]), double(ours.normal[1]), double(ours.normal[2])}),
-                    single(exact.z, warp, double(ours.depth[0])), single(exact.z2, 2.0 * warp, double(ours.depth[1])), single(exact.alpha, 0.0, double(ours.depth[2]))};
+                    single(exact.z, warp, double(ours.depth[0])), single(exact.z2, 2.0 * warp, double(ours.depth[1])),
+                    single(exact.alpha, 0.0, double(ours.depth[2]))};
     return made;
 }
 
 void addTexel(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "layer_texel",
-        .meaning = "one LRSM texel as the mean over the 4x4 RSM texels below it, premultiplied: what is not in the layer counts as 0",
-        .inputs = {{"radiance", {kTexelEdge, kTexelEdge, 3}, "W/(m^2 sr)", "of each RSM texel, RGB"},
-                   {"normal", {kTexelEdge, kTexelEdge, 3}, "", "unit"},
-                   {"depth", {kTexelEdge, kTexelEdge}, "linear depth", "of the light, 0 .. 1"},
-                   {"in_layer", {kTexelEdge, kTexelEdge}, "", "1 where the texel is in the layer", Dtype::u1},
-                   {"depth_min", {}, "linear depth", "where the layer begins: z is warped to (z - depth_min) / (depth_max - depth_min)"},
-                   {"depth_max", {}, "linear depth", "where it ends"}},
-        .outputs = {outputOf("6", {"eq6.radiance", {3}, "W/(m^2 sr)", "A R: mean radiance"}, {"kRadianceMeanMaxError", double(kRadianceMeanMaxError)},
-                             "relative to the largest radiance, 4"),
-                    outputOf("8", {"eq8.mean_normal", {3}, "", "alpha n: mean normal"}, {"kLayerNormalMaxError", double(kLayerNormalMaxError)}),
-                    outputOf("10", {"eq10.alpha_z", {}, "", "alpha z: mean warped depth"}, {"kLayerDepthMaxError", double(kLayerDepthMaxError)},
-                             "and an ULP of the inputs over the range"),
-                    outputOf("11", {"eq11.alpha_z2", {}, "", "alpha z^2: mean square of the warped depth"}, {"kLayerDepthMaxError", double(kLayerDepthMaxError)},
-                             "and an ULP of the inputs over the range, twice"),
-                    outputOf("14", {"eq14.coverage", {}, "", "A, alpha: share of the texels in the layer"}, {"exact", 0.0})},
-        .kinds = {}});
+    VectorSet& set = sets.emplace_back(
+        VectorSet{.name = "layer_texel",
+                  .meaning = "one LRSM texel as the mean over the 4x4 RSM texels below it, premultiplied: what is not in the layer counts as 0",
+                  .inputs = {{"radiance", {kTexelEdge, kTexelEdge, 3}, "W/(m^2 sr)", "of each RSM texel, RGB"},
+                             {"normal", {kTexelEdge, kTexelEdge, 3}, "", "unit"},
+                             {"depth", {kTexelEdge, kTexelEdge}, "linear depth", "of the light, 0 .. 1"},
+                             {"in_layer", {kTexelEdge, kTexelEdge}, "", "1 where the texel is in the layer", Dtype::u1},
+                             {"depth_min", {}, "linear depth", "where the layer begins: z is warped to (z - depth_min) / (depth_max - depth_min)"},
+                             {"depth_max", {}, "linear depth", "where it ends"}},
+                  .outputs = {outputOf("6", {"eq6.radiance", {3}, "W/(m^2 sr)", "A R: mean radiance"}, {"kRadianceMeanMaxError", double(kRadianceMeanMaxError)},
+                                       "relative to the largest radiance, 4"),
+                              outputOf("8", {"eq8.mean_normal", {3}, "", "alpha n: mean normal"}, {"kLayerNormalMaxError", double(kLayerNormalMaxError)}),
+                              outputOf("10", {"eq10.alpha_z", {}, "", "alpha z: mean warped depth"}, {"kLayerDepthMaxError", double(kLayerDepthMaxError)},
+                                       "and an ULP of the inputs over the range"),
+                              outputOf("11", {"eq11.alpha_z2", {}, "", "alpha z^2: mean square of the warped depth"},
+                                       {"kLayerDepthMaxError", double(kLayerDepthMaxError)}, "and an ULP of the inputs over the range, twice"),
+                              outputOf("14", {"eq14.coverage", {}, "", "A, alpha: share of the texels in the layer"}, {"exact", 0.0})},
+                  .kinds = {}});
     fillSet(
         set, draws(4), [](const std::array<float, 1>& in) { return layerTexel(static_cast<int>(in[0])); }, 1420, kDrawCounts);
 }
 
 void addMembership(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "membership",
-        .meaning = "Eq. 13's alpha_l: which of four layers an RSM texel is in; ranges are half-open, the farthest and the steepest closed",
-        .inputs = {{"depth", {}, "linear depth", "of the texel"},
-                   {"n_dot_l", {}, "", "of the texel"},
-                   {"depth_min", {kFourLayers}, "linear depth", "of each layer"},
-                   {"depth_max", {kFourLayers}, "linear depth", "of each layer"},
-                   {"n_dot_l_min", {kFourLayers}, "", "of each layer"},
-                   {"n_dot_l_max", {kFourLayers}, "", "of each layer"}},
-        .outputs = {outputOf("13", {"eq13.membership", {kFourLayers}, "", "alpha_l: 1 or 0"}, {"exact", 0.0})},
-        .kinds = {}});
+    VectorSet& set = sets.emplace_back(
+        VectorSet{.name = "membership",
+                  .meaning = "Eq. 13's alpha_l: which of four layers an RSM texel is in; ranges are half-open, the farthest and the steepest closed",
+                  .inputs = {{"depth", {}, "linear depth", "of the texel"},
+                             {"n_dot_l", {}, "", "of the texel"},
+                             {"depth_min", {kFourLayers}, "linear depth", "of each layer"},
+                             {"depth_max", {kFourLayers}, "linear depth", "of each layer"},
+                             {"n_dot_l_min", {kFourLayers}, "", "of each layer"},
+                             {"n_dot_l_max", {kFourLayers}, "", "of each layer"}},
+                  .outputs = {outputOf("13", {"eq13.membership", {kFourLayers}, "", "alpha_l: 1 or 0"}, {"exact", 0.0})},
+                  .kinds = {}});
     // The near end, the width, the overlap, the place in the width, <n.l>.
     SearchSpace<float, 5> space{{{{0.0f, 0.4f}, {0.1f, 0.5f}, {0.0f, 0.5f}, {0.0f, 1.0f}, {0.0f, 1.0f}}}, {}};
     for (const float overlap : {0.0f, 0.3f})
         for (const float at : {0.0f, 0.25f, 0.5f, 1.0f})
             for (const float n : {0.25f, 0.5f, 1.0f}) space.planted.push_back({0.25f, 0.5f, overlap, at, n});
-    fillSet(
-        set, space,
-        [](const std::array<float, 5>& in) {
-            const std::vector<LayerRange> ranges = rangesOver(in[0], in[0] + in[1], in[2]);
-            const float nearest = ranges.front().depthMin, farthest = ranges.back().depthMax, depth = std::min(nearest + (farthest - nearest) * in[3], farthest);
-            const Lrsm lrsm = build(syntheticMap(plainProjection(2), [&](int, int) { return MapTexel{.depth = depth, .nDotL = in[4]}; }), ranges);
-            VectorCase made{{{double(depth)}, {double(in[4])}, {}, {}, {}, {}}, {VectorResult{}}};
-            for (std::size_t i = 0; i < ranges.size(); ++i) {
-                const LayerRange& r = ranges[i];
-                made.inputs[2].push_back(double(r.depthMin)), made.inputs[3].push_back(double(r.depthMax));
-                made.inputs[4].push_back(double(r.nDotLMin)), made.inputs[5].push_back(double(r.nDotLMax));
-                made.results[0].exact.push_back(belongs(ranges, r, depth, in[4]) ? 1.0 : 0.0);
-                made.results[0].allowed.push_back(0.0);
-                made.results[0].ours.push_back(double(lrsm.level(static_cast<int>(i), 0)->depth[2]));
-            }
-            return made;
-        },
-        1430, {.typical = 128, .worst = 0, .search = 32});
+    fillSet(set, space,
+            [](const std::array<float, 5>& in) {
+                const std::vector<LayerRange> ranges = rangesOver(in[0], in[0] + in[1], in[2]);
+                const float nearest = ranges.front().depthMin, farthest = ranges.back().depthMax,
+                            depth = std::min(nearest + (farthest - nearest) * in[3], farthest);
+                const Lrsm lrsm = build(syntheticMap(plainProjection(2), [&](int, int) { return MapTexel{.depth = depth, .nDotL = in[4]}; }), ranges);
+                VectorCase made{{{double(depth)}, {double(in[4])}, {}, {}, {}, {}}, {VectorResult{}}};
+                for (std::size_t i = 0; i < ranges.size(); ++i) {
+                    const LayerRange& r = ranges[i];
+                    made.inputs[2].push_back(double(r.depthMin)), made.inputs[3].push_back(double(r.depthMax));
+                    made.inputs[4].push_back(double(r.nDotLMin)), made.inputs[5].push_back(double(r.nDotLMax));
+                    made.results[0].exact.push_back(belongs(ranges, r, depth, in[4]) ? 1.0 : 0.0);
+                    made.results[0].allowed.push_back(0.0);
+                    made.results[0].ours.push_back(double(lrsm.level(static_cast<int>(i), 0)->depth[2]));
+                }
+                return made;
+            },
+            1430, {.typical = 128, .worst = 0, .search = 32});
 }
 
 void addPartition(std::vector<VectorSet>& sets)
@@ -136,9 +138,13 @@ void addPartition(std::vector<VectorSet>& sets)
     constexpr int kSlices = 4;
     VectorSet& set = sets.emplace_back(VectorSet{
         .name = "partition",
-        .meaning = "Sec. 4.3: four equal slices of the depths; neighbours overlap by delta, centred on the cut between them; the outer ends reach delta further",
-        .inputs = {{"nearest", {}, "linear depth", "of the map"}, {"farthest", {}, "linear depth", "of the map"}, {"overlap", {}, "", "delta over a slice's width"}},
-        .outputs = {outputOf("13", {"eq13.depth_min", {kSlices}, "linear depth", "where each slice begins"}, {"kPartitionMaxError", double(kPartitionMaxError)}),
+        .meaning =
+            "Sec. 4.3: four equal slices of the depths; neighbours overlap by delta, centred on the cut between them; the outer ends reach delta further",
+        .inputs = {{"nearest", {}, "linear depth", "of the map"},
+                   {"farthest", {}, "linear depth", "of the map"},
+                   {"overlap", {}, "", "delta over a slice's width"}},
+        .outputs = {outputOf("13", {"eq13.depth_min", {kSlices}, "linear depth", "where each slice begins"},
+                             {"kPartitionMaxError", double(kPartitionMaxError)}),
                     outputOf("13", {"eq13.depth_max", {kSlices}, "linear depth", "where each ends"}, {"kPartitionMaxError", double(kPartitionMaxError)})},
         .kinds = {}});
     fillSet(
@@ -155,7 +161,8 @@ void addPartition(std::vector<VectorSet>& sets)
                 begins.ours.push_back(double(ours[std::size_t(i)].depthMin)), ends.ours.push_back(double(ours[std::size_t(i)].depthMax));
             }
             const double allowed = double(kPartitionMaxError);
-            return VectorCase{{{double(nearest)}, {double(farthest)}, {double(in[2])}}, {many(begins.exact, allowed, begins.ours), many(ends.exact, allowed, ends.ours)}};
+            return VectorCase{{{double(nearest)}, {double(farthest)}, {double(in[2])}},
+                              {many(begins.exact, allowed, begins.ours), many(ends.exact, allowed, ends.ours)}};
         },
         1440);
 }
@@ -185,28 +192,30 @@ VectorCase layerSum(int draw)
 
 void addSum(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "layer_sum",
-        .meaning = "Eq. 14 over four layers, each weighted by its decay",
-        .inputs = {{"f", {kFourLayers}, "", "decay of Eq. 15"}, {"a", {kFourLayers}, "", "coverage A_l"}, {"l", {kFourLayers, 3}, "W/(m^2 sr)", "L_l of Eq. 5, RGB"}},
-        .outputs = {outputOf("14", {"eq14.radiance", {3}, "W/(m^2 sr)", "sum of f_l A_l L_l"}, kLayersMaxError, "relative")},
-        .kinds = {}});
+    VectorSet& set =
+        sets.emplace_back(VectorSet{.name = "layer_sum",
+                                    .meaning = "Eq. 14 over four layers, each weighted by its decay",
+                                    .inputs = {{"f", {kFourLayers}, "", "decay of Eq. 15"},
+                                               {"a", {kFourLayers}, "", "coverage A_l"},
+                                               {"l", {kFourLayers, 3}, "W/(m^2 sr)", "L_l of Eq. 5, RGB"}},
+                                    .outputs = {outputOf("14", {"eq14.radiance", {3}, "W/(m^2 sr)", "sum of f_l A_l L_l"}, kLayersMaxError, "relative")},
+                                    .kinds = {}});
     fillSet(
         set, draws(3), [](const std::array<float, 1>& in) { return layerSum(static_cast<int>(in[0])); }, 1460, kDrawCounts);
 }
 
 void addDecay(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "decay",
-        .meaning = "Eq. 15 with k = smoothstep, 3 t^2 - 2 t^3, decaying at both ends",
-        .inputs = {{"z_min", {}, "linear depth", "where the layer begins, its overlap included"},
-                   {"z_max", {}, "linear depth", "where it ends"},
-                   {"delta", {}, "linear depth", "over which it decays"},
-                   {"z_c", {}, "linear depth", "of the sample"}},
-        .outputs = {outputOf("15", {"eq15.decay", {}, "", "f(z_c); 0 outside [z_min, z_max)"}, {"kDecayMaxError", double(kDecayMaxError)},
-                             "absolute, and half an ULP of the inputs over delta")},
-        .kinds = {}});
+    VectorSet& set =
+        sets.emplace_back(VectorSet{.name = "decay",
+                                    .meaning = "Eq. 15 with k = smoothstep, 3 t^2 - 2 t^3, decaying at both ends",
+                                    .inputs = {{"z_min", {}, "linear depth", "where the layer begins, its overlap included"},
+                                               {"z_max", {}, "linear depth", "where it ends"},
+                                               {"delta", {}, "linear depth", "over which it decays"},
+                                               {"z_c", {}, "linear depth", "of the sample"}},
+                                    .outputs = {outputOf("15", {"eq15.decay", {}, "", "f(z_c); 0 outside [z_min, z_max)"},
+                                                         {"kDecayMaxError", double(kDecayMaxError)}, "absolute, and half an ULP of the inputs over delta")},
+                                    .kinds = {}});
     fillSet(
         set, decaySpace(),
         [](const std::array<float, 4>& in) {

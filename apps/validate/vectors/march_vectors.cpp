@@ -59,7 +59,9 @@ void addMarchVectors(std::vector<VectorSet>& sets)
         .meaning = "Eq. 1's alpha of a step, opacity=density: 1 - (1 - a)^(k length), a at most 1",
         .inputs = {{"a", {}, "", "opacity that the voxels say, a base voxel"}, {"length", {}, "base voxels", "of the step"}, {"k", {}, "", "density_k"}},
         .outputs = {outputOf("1", {"eq1.step_opacity", {}, "", "alpha"}, {"kStepOpacityMaxError", double(kStepOpacityMaxError)},
-                             "absolute, times max(1, k length / 16)")},
+                             "absolute, times max(1, k length / 16)"),
+                    outputOf("1", {"eq1.step_opacity_gpu", {}, "", "alpha by a GPU's log2 and exp2: of a thin medium log2(1 - a) is their error"}, kGpuMaxError,
+                             "of log2, and the bound above")},
         .kinds = {}});
     fillSet(
         step, stepSpace(),
@@ -68,8 +70,10 @@ void addMarchVectors(std::vector<VectorSet>& sets)
             settings.march.opacity = OpacityModel::density;
             settings.march.densityK = in[2];
             const double length = double(in[1]), allowed = double(kStepOpacityMaxError) * std::max(1.0, length * double(in[2]) / 16.0);
-            return VectorCase{{{double(in[0])}, {length}, {double(in[2])}},
-                              {single(twin::stepOpacity(double(in[0]), length, settings), allowed, double(stepOpacity(in[0], in[1], settings)))}};
+            const double exact = twin::stepOpacity(double(in[0]), length, settings), ours = double(stepOpacity(in[0], in[1], settings));
+            constexpr double kLn2 = 0.6931471805599453;
+            const double gpu = allowed + (1.0 - exact) * (length * double(in[2]) * kLn2 + 1.0) * kGpuMaxError.value;
+            return VectorCase{{{double(in[0])}, {length}, {double(in[2])}}, {single(exact, allowed, ours), single(exact, gpu, ours)}};
         },
         1010);
 

@@ -13,12 +13,12 @@ namespace {
 
 void addProduct(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(
-        VectorSet{.name = "product",
-                  .meaning = "Eq. 5: outgoing radiance of one layer",
-                  .inputs = {{"r", {}, "W/(m^2 sr)", "R of Eq. 6"}, {"v", {}, "", "V of Eq. 12"}, {"n", {}, "", "N of Eq. 8"}},
-                  .outputs = {outputOf("5", {"eq5.radiance", {}, "W/(m^2 sr)", "R V N"}, {"4 half ULPs", 4.0 * kHalfUlp}, "relative")},
-                  .kinds = {}});
+    VectorSet& set =
+        sets.emplace_back(VectorSet{.name = "product",
+                                    .meaning = "Eq. 5: outgoing radiance of one layer",
+                                    .inputs = {{"r", {}, "W/(m^2 sr)", "R of Eq. 6"}, {"v", {}, "", "V of Eq. 12"}, {"n", {}, "", "N of Eq. 8"}},
+                                    .outputs = {outputOf("5", {"eq5.radiance", {}, "W/(m^2 sr)", "R V N"}, {"4 half ULPs", 4.0 * kHalfUlp}, "relative")},
+                                    .kinds = {}});
     fillSet(
         set, SearchSpace<float, 3>{{{{1e-6f, 1e4f, Spacing::logarithmic}, {1e-4f, 1.0f}, {1e-4f, 1.0f}}}, {{1.0f, 0.0f, 1.0f}, {1.0f, 1.0f, 0.0f}}},
         [](const std::array<float, 3>& in) {
@@ -33,7 +33,9 @@ void addTerms(std::vector<VectorSet>& sets)
     VectorSet& normal = sets.emplace_back(
         VectorSet{.name = "normal_term",
                   .meaning = "Eq. 8: N of a filtered texel, backface=cosine",
-                  .inputs = {{"alpha_n", {3}, "", "filtered alpha n"}, {"alpha", {}, "", "filtered alpha beside it"}, {"v", {3}, "", "v_c, unit, from sample to receiver"}},
+                  .inputs = {{"alpha_n", {3}, "", "filtered alpha n"},
+                             {"alpha", {}, "", "filtered alpha beside it"},
+                             {"v", {3}, "", "v_c, unit, from sample to receiver"}},
                   .outputs = {outputOf("8", {"eq8.normal_term", {}, "", "max(0, <alpha n . v> / alpha); the mean normal is not made unit again"},
                                        {"kNormalTermMaxError", double(kNormalTermMaxError)})},
                   .kinds = {}});
@@ -70,7 +72,7 @@ void addTerms(std::vector<VectorSet>& sets)
 /// Eq. 12: Phi, and the window; what half an ULP of the inputs does to a window over sigma is allowed besides.
 void addVisibility(std::vector<VectorSet>& sets)
 {
-    const NormalCdf polynomial, table(GaussianMethod::table, 1024);
+    const NormalCdf polynomial, table(GaussianMethod::table, kVectorTableEntries);
     VectorSet& phi = sets.emplace_back(
         VectorSet{.name = "normal_cdf",
                   .meaning = "the standard normal distribution function",
@@ -85,15 +87,19 @@ void addVisibility(std::vector<VectorSet>& sets)
         phi, space,
         [&](const std::array<float, 1>& in) {
             const double exact = -oracle::phiError(double(in[0]), 0.0);
-            return VectorCase{{{double(in[0])}},
-                              {single(exact, double(polynomial.maxError()), double(polynomial(in[0]))), single(exact, double(table.maxError()), double(table(in[0])))}};
+            return VectorCase{
+                {{double(in[0])}},
+                {single(exact, double(polynomial.maxError()), double(polynomial(in[0]))), single(exact, double(table.maxError()), double(table(in[0])))}};
         },
         1330);
 
     VectorSet& window = sets.emplace_back(VectorSet{
         .name = "visibility",
         .meaning = "Eq. 12: the part of N(mu, sigma^2) in [z_c - r_c, z_c + r_c]",
-        .inputs = {{"mu", {}, "warped depth", "mean"}, {"sigma2", {}, "warped depth^2", "variance; 0: a step"}, {"z_c", {}, "warped depth", "centre"}, {"r_c", {}, "warped depth", "radius"}},
+        .inputs = {{"mu", {}, "warped depth", "mean"},
+                   {"sigma2", {}, "warped depth^2", "variance; 0: a step"},
+                   {"z_c", {}, "warped depth", "centre"},
+                   {"r_c", {}, "warped depth", "radius"}},
         .outputs = {outputOf("12", {"eq12.visibility", {}, "", "V, by a polynomial or erf; sigma^2 = 0: 1 inside, 0 outside, 1/2 on the edge"},
                              {"gaussianVisibilityMaxError", double(gaussianVisibilityMaxError(polynomial))}, "and half an ULP of the inputs over sigma"),
                     outputOf("12", {"eq12.visibility_table", {}, "", "V, by a table of 1024 entries over [-5, 5] (the paper's way)"},
@@ -105,7 +111,8 @@ void addVisibility(std::vector<VectorSet>& sets)
         constexpr double kSteepest = 0.3989422804014327;  // of Phi
         const double inputs = w.sigma2 > 0.0f ? 2.0 * kSteepest * kHalfUlp * reach / std::sqrt(double(w.sigma2)) : 0.0;
         const auto of = [&](const NormalCdf& cdf) {
-            return single(exact, w.sigma2 > 0.0f ? double(gaussianVisibilityMaxError(cdf)) + inputs : 0.0, double(gaussianVisibility(cdf, w.mu, w.sigma2, w.zc, w.rc)));
+            return single(exact, w.sigma2 > 0.0f ? double(gaussianVisibilityMaxError(cdf)) + inputs : 0.0,
+                          double(gaussianVisibility(cdf, w.mu, w.sigma2, w.zc, w.rc)));
         };
         return VectorCase{{{double(w.mu)}, {double(w.sigma2)}, {double(w.zc)}, {double(w.rc)}}, {of(polynomial), of(table)}};
     };
@@ -127,15 +134,15 @@ void addWeights(std::vector<VectorSet>& sets)
         map.levelOffset.push_back(map.texelsPerLayer);
         map.texelsPerLayer += std::size_t(n) * std::size_t(n);
     }
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "sampler_weights",
-        .meaning = "Eq. 9: each texel's weight in a trilinear lookup in a map of 8x8 texels with all mips (border 0, level clamped to 0 .. 3)",
-        .inputs = {{"u", {}, "", "[0, 1] over the map, to the right"}, {"v", {}, "", "[0, 1] over the map, downwards"}, {"level", {}, "", ""}},
-        .outputs = {outputOf("9", {"eq9.weights", {kAll}, "", "level 0 row by row (64), level 1 (16), level 2 (4), level 3 (1)"},
-                             {"kFootprintWeightMaxError", double(kFootprintWeightMaxError)}),
-                    outputOf("9", {"eq9.weights_sampler", {kAll}, "", "the same by a GPU's sampler, fractions in 1/256 or finer"},
-                             {"kFootprintWeightMaxError + 3/512", double(kFootprintWeightMaxError) + kFraction})},
-        .kinds = {}});
+    VectorSet& set = sets.emplace_back(
+        VectorSet{.name = "sampler_weights",
+                  .meaning = "Eq. 9: each texel's weight in a trilinear lookup in a map of 8x8 texels with all mips (border 0, level clamped to 0 .. 3)",
+                  .inputs = {{"u", {}, "", "[0, 1] over the map, to the right"}, {"v", {}, "", "[0, 1] over the map, downwards"}, {"level", {}, "", ""}},
+                  .outputs = {outputOf("9", {"eq9.weights", {kAll}, "", "level 0 row by row (64), level 1 (16), level 2 (4), level 3 (1)"},
+                                       {"kFootprintWeightMaxError", double(kFootprintWeightMaxError)}),
+                              outputOf("9", {"eq9.weights_sampler", {kAll}, "", "the same by a GPU's sampler, fractions in 1/256 or finer"},
+                                       {"kFootprintWeightMaxError + 3/512", double(kFootprintWeightMaxError) + kFraction})},
+                  .kinds = {}});
     SearchSpace<float, 3> space{{{{-0.01f, 1.01f}, {-0.01f, 1.01f}, {-1.0f, 4.5f}}}, {}};
     for (int lod = 0; lod < kMapLevels; ++lod)
         for (const float cell : {0.0f, 0.5f, 1.0f, 1.5f}) space.planted.push_back({cell / float(kMapEdge >> lod), 0.3f, float(lod) + cell / 4.0f});
@@ -156,12 +163,15 @@ void addWeights(std::vector<VectorSet>& sets)
 
 void addLevel(std::vector<VectorSet>& sets)
 {
-    VectorSet& set = sets.emplace_back(VectorSet{
-        .name = "lrsm_level",
-        .meaning = "Sec. 5: mip level of the LRSM for a sphere; its texel is two RSM texels wide",
-        .inputs = {{"diameter", {}, "m", "of the sphere"}, {"texel", {}, "m", "edge of an RSM texel there"}, {"bias", {}, "levels", "rsm_level_bias"}, {"least", {}, "levels", "rsm_min_level"}},
-        .outputs = {outputOf("sec5", {"sec5.level", {}, "levels", "max(log2(diameter / (2 texel)) + bias, least)"}, {"kLrsmLevelMaxError", double(kLrsmLevelMaxError)})},
-        .kinds = {}});
+    VectorSet& set = sets.emplace_back(VectorSet{.name = "lrsm_level",
+                                                 .meaning = "Sec. 5: mip level of the LRSM for a sphere; its texel is two RSM texels wide",
+                                                 .inputs = {{"diameter", {}, "m", "of the sphere"},
+                                                            {"texel", {}, "m", "edge of an RSM texel there"},
+                                                            {"bias", {}, "levels", "rsm_level_bias"},
+                                                            {"least", {}, "levels", "rsm_min_level"}},
+                                                 .outputs = {outputOf("sec5", {"sec5.level", {}, "levels", "max(log2(diameter / (2 texel)) + bias, least)"},
+                                                                      {"kLrsmLevelMaxError", double(kLrsmLevelMaxError)})},
+                                                 .kinds = {}});
     fillSet(
         set, levelSpace(),
         [](const std::array<float, 4>& in) {
@@ -203,8 +213,16 @@ void addProjection(std::vector<VectorSet>& sets)
             const LightSpacePoint ours = projectToLight(light, p);
             if (!exact.valid) return {};
             const double allowed = double(spot ? kProjectionMaxError : kDirectionalProjectionMaxError);
-            return {{wide(p), {spot ? 1.0 : 0.0}, wide(light.position), wide(light.right), wide(light.up), wide(light.forward), {double(light.halfWidth)},
-                     {double(light.depthNear)}, {double(light.depthFar)}, {double(light.resolution)}},
+            return {{wide(p),
+                     {spot ? 1.0 : 0.0},
+                     wide(light.position),
+                     wide(light.right),
+                     wide(light.up),
+                     wide(light.forward),
+                     {double(light.halfWidth)},
+                     {double(light.depthNear)},
+                     {double(light.depthFar)},
+                     {double(light.resolution)}},
                     {many({exact.u, exact.v, exact.depth}, allowed, {double(ours.u), double(ours.v), double(ours.depth)}),
                      single(exact.texelSize, double(kProjectionMaxError) * exact.texelSize, double(ours.texelSize))}};
         },

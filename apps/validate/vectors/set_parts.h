@@ -13,6 +13,9 @@ namespace lrsm {
 /// 2^-24: half an ULP of float32, relative.
 inline constexpr double kHalfUlp = 0x1p-24;
 
+/// What D3D11.3 asks of a GPU's log2 and exp2.
+inline constexpr NamedBound kGpuMaxError{"2^-21", 0x1p-21};
+
 inline VectorOutput outputOf(const std::string& equation, VectorArray array, const NamedBound& bound, const std::string& kind = "absolute")
 {
     return {.equation = equation,

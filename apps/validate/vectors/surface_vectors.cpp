@@ -28,7 +28,8 @@ VectorCase directSum(int draw)
         if (draw == 3) position = Vec3(i % 2 ? 0.5f : 0.75f, 0.0f, 0.0f);
         const Vec3 radiance(random.uniform(0.0f, 4.0f), random.uniform(0.0f, 1.0f), random.uniform(0.0f, 0.01f));
         const float solidAngle = random.uniform(0.5f, 1.0f);
-        texels.push_back({glm::dvec3(position), glm::dvec3(normal), draw == 2 ? glm::dvec3(normal) : glm::dvec3(toLight), glm::dvec3(radiance), double(solidAngle)});
+        texels.push_back(
+            {glm::dvec3(position), glm::dvec3(normal), draw == 2 ? glm::dvec3(normal) : glm::dvec3(toLight), glm::dvec3(radiance), double(solidAngle)});
         const auto append = [&](std::size_t input, const std::vector<double>& values) {
             made.inputs[input].insert(made.inputs[input].end(), values.begin(), values.end());
         };
@@ -41,7 +42,8 @@ VectorCase directSum(int draw)
     double total = 0.0;
     for (const TexelSample& texel : texels) {
         if (draw != 3 && std::abs(double(radius) - glm::length(texel.position - glm::dvec3(centre))) < kNearSphere) return {};
-        const double lit = glm::dot(texel.normal, texel.toLight), weight = weightEq4(texel, glm::dvec3(v), insideSample(texel, glm::dvec3(centre), double(radius)));
+        const double lit = glm::dot(texel.normal, texel.toLight),
+                     weight = weightEq4(texel, glm::dvec3(v), insideSample(texel, glm::dvec3(centre), double(radius)));
         total += weight * texel.solidAngle;
         // Two dot products, each within three half ULPs of 1, and a division.
         weights.exact.push_back(weight), weights.allowed.push_back(4.0 * kHalfUlp * (1.0 + weight) / std::min(lit, 1.0));

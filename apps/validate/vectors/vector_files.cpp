@@ -3,6 +3,7 @@
 #include "apps/capture/buffer.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
+#include "lrsm/gaussian_visibility.h"
 
 #include <cmath>
 #include <cstring>
@@ -49,7 +50,8 @@ Json arrayJson(const VectorArray& array, std::size_t cases)
 
 Json setJson(const VectorSet& set)
 {
-    Json json = {{"name", set.name}, {"meaning", set.meaning}, {"cases", set.cases()}, {"kinds", Json::array()}, {"inputs", Json::array()}, {"outputs", Json::array()}};
+    Json json = {{"name", set.name},       {"meaning", set.meaning},  {"cases", set.cases()},
+                 {"kinds", Json::array()}, {"inputs", Json::array()}, {"outputs", Json::array()}};
     for (const CaseKind kind : set.kinds) json["kinds"].push_back(nameOf(kind));
     for (const VectorArray& input : set.inputs) {
         Json entry = arrayJson(input, set.cases());
@@ -66,6 +68,19 @@ Json setJson(const VectorSet& set)
         json["outputs"].push_back(std::move(entry));
     }
     return json;
+}
+
+/// What an implementation may want to have from us: the floor of Eq. 11, Phi as a polynomial, the paper's table.
+Json constantsJson()
+{
+    return {{"variance_floor", kVarianceFloor},
+            {"gaussian",
+             {{"table_half_width", kTableHalfWidth},
+              {"table_entries", kVectorTableEntries},
+              {"polynomial",
+               {{"limit", kCdfLimit},
+                {"numerator", std::vector<float>(std::begin(kCdfNumerator), std::end(kCdfNumerator))},
+                {"denominator", std::vector<float>(std::begin(kCdfDenominator), std::end(kCdfDenominator))}}}}}};
 }
 
 /// The description alone; `cases` is what its shape must begin with.
@@ -106,7 +121,8 @@ VectorSet readSet(const std::string& folder, const JsonReader& json)
         set.inputs.back().values = readValues(folder, entry["file"], set.inputs.back(), set.cases());
     }
     for (const JsonReader& entry : json["outputs"].items()) {
-        VectorOutput output{.equation = entry["equation"].text(), .exact = readArray(entry, set.cases()), .bound = entry["bound"].text(), .allowed = {}, .ours = {}};
+        VectorOutput output{
+            .equation = entry["equation"].text(), .exact = readArray(entry, set.cases()), .bound = entry["bound"].text(), .allowed = {}, .ours = {}};
         output.exact.values = readValues(folder, entry["exact"], output.exact, set.cases());
         output.allowed = readValues(folder, entry["allowed"], output.exact, set.cases());
         set.outputs.push_back(std::move(output));
@@ -153,7 +169,7 @@ std::vector<double> numbersOf(const NpyArray& array)
 
 void writeVectors(OutputFolder& folder, const std::vector<VectorSet>& sets, const std::string& version)
 {
-    Json json = {{"format", kFormat}, {"formatVersion", kFormatVersion}, {"version", version}, {"sets", Json::array()}};
+    Json json = {{"format", kFormat}, {"formatVersion", kFormatVersion}, {"version", version}, {"constants", constantsJson()}, {"sets", Json::array()}};
     for (const VectorSet& set : sets) {
         json["sets"].push_back(setJson(set));
         for (const VectorArray& input : set.inputs) writeArray(folder, inputFile(set, input), input.dtype, wholeShape(input, set.cases()), input.values);

@@ -10,6 +10,9 @@
 /// (or one that several equations share), a row one case.
 namespace lrsm {
 
+/// Of the table by which Eq. 12 is held to the paper's way.
+inline constexpr int kVectorTableEntries = 1024;
+
 /// Where a case comes from.
 enum class CaseKind {
     typical,  ///< drawn from the domain

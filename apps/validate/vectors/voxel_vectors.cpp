@@ -38,31 +38,32 @@ VectorCase lookUp(const std::array<float, 5>& in)
 
 void addVoxelVectors(std::vector<VectorSet>& sets)
 {
-    VectorSet& lookup = sets.emplace_back(VectorSet{
-        .name = "opacity_lookup",
-        .meaning = "Sec. 3.1: mean mips of 4^3 voxels, and their quadrilinear lookup (texel centres at +0.5, border 0, level clamped to 0 .. 2)",
-        .inputs = {{"level0", {4, 4, 4}, "", "voxels, [z][y][x]"},
-                   {"level1", {2, 2, 2}, "", "mip"},
-                   {"level2", {1, 1, 1}, "", "mip"},
-                   {"place", {3}, "base voxels", "x, y, z from the grid's corner"},
-                   {"level", {}, "", ""}},
-        .outputs = {outputOf("sec3", {"sec3.opacity", {}, "", "at the place and level"}, {"kOpacityLookupMaxError", double(kOpacityLookupMaxError)}),
-                    outputOf("sec3", {"sec3.opacity_sampler", {}, "", "the same by a GPU's sampler, fractions in 1/256 or finer"},
-                             {"kOpacityLookupMaxError + 4/512", double(kOpacityLookupMaxError) + 4.0 / 512.0}),
-                    outputOf("sec3", {"sec3.mean", {}, "", "level2 from level0 by means of 8, mip_filter=mean"}, {"half an ULP", kHalfUlp})},
-        .kinds = {}});
-    fillSet(
-        lookup, SearchSpace<float, 5>{{{{-1.0f, 5.0f}, {-1.0f, 5.0f}, {-1.0f, 5.0f}, {-0.5f, 2.5f}, {0.0f, 1.0f}}}, {{0.5f, 1.5f, 2.0f, 0.0f, 0.5f}, {2.0f, 2.0f, 2.0f, 1.0f, 0.5f}}},
-        lookUp, 1510);
+    VectorSet& lookup = sets.emplace_back(
+        VectorSet{.name = "opacity_lookup",
+                  .meaning = "Sec. 3.1: mean mips of 4^3 voxels, and their quadrilinear lookup (texel centres at +0.5, border 0, level clamped to 0 .. 2)",
+                  .inputs = {{"level0", {4, 4, 4}, "", "voxels, [z][y][x]"},
+                             {"level1", {2, 2, 2}, "", "mip"},
+                             {"level2", {1, 1, 1}, "", "mip"},
+                             {"place", {3}, "base voxels", "x, y, z from the grid's corner"},
+                             {"level", {}, "", ""}},
+                  .outputs = {outputOf("sec3", {"sec3.opacity", {}, "", "at the place and level"}, {"kOpacityLookupMaxError", double(kOpacityLookupMaxError)}),
+                              outputOf("sec3", {"sec3.opacity_sampler", {}, "", "the same by a GPU's sampler, fractions in 1/256 or finer"},
+                                       {"kOpacityLookupMaxError + 4/512", double(kOpacityLookupMaxError) + 4.0 / 512.0}),
+                              outputOf("sec3", {"sec3.mean", {}, "", "level2 from level0 by means of 8, mip_filter=mean"}, {"half an ULP", kHalfUlp})},
+                  .kinds = {}});
+    fillSet(lookup,
+            SearchSpace<float, 5>{{{{-1.0f, 5.0f}, {-1.0f, 5.0f}, {-1.0f, 5.0f}, {-0.5f, 2.5f}, {0.0f, 1.0f}}},
+                                  {{0.5f, 1.5f, 2.0f, 0.0f, 0.5f}, {2.0f, 2.0f, 2.0f, 1.0f, 0.5f}}},
+            lookUp, 1510);
 
-    VectorSet& cones = sets.emplace_back(VectorSet{.name = "six_cones",
-                                                   .meaning = "Fig. 7: the paper's six diffuse cones, cone_count=6, rotation=none, estimator=paper; the first along +z, the normal",
-                                                   .inputs = {{"cone", {}, "", "its number", Dtype::u1}},
-                                                   .outputs = {outputOf("fig7", {"fig7.axis", {3}, "", "unit; five of them 60 degrees from the normal, the second in the xz plane"},
-                                                                        {"kConeSetMaxError", double(kConeSetMaxError)}),
-                                                               outputOf("fig7", {"fig7.weight", {}, "", "1/4, and 3/20 for each of the others"},
-                                                                        {"kConeSetMaxError", double(kConeSetMaxError)})},
-                                                   .kinds = {}});
+    VectorSet& cones = sets.emplace_back(VectorSet{
+        .name = "six_cones",
+        .meaning = "Fig. 7: the paper's six diffuse cones, cone_count=6, rotation=none, estimator=paper; the first along +z, the normal",
+        .inputs = {{"cone", {}, "", "its number", Dtype::u1}},
+        .outputs = {outputOf("fig7", {"fig7.axis", {3}, "", "unit; five of them 60 degrees from the normal, the second in the xz plane"},
+                             {"kConeSetMaxError", double(kConeSetMaxError)}),
+                    outputOf("fig7", {"fig7.weight", {}, "", "1/4, and 3/20 for each of the others"}, {"kConeSetMaxError", double(kConeSetMaxError)})},
+        .kinds = {}});
     ConeSettings settings;
     settings.march.estimator = Estimator::paper;
     settings.set.count = 6;
@@ -88,8 +89,7 @@ void addVoxelVectors(std::vector<VectorSet>& sets)
         [](const std::array<float, 1>& in) {
             ConeSettings s;
             s.specular.aperture = SpecularAperture::roughness;
-            return VectorCase{{{double(in[0])}},
-                              {single(oracle::specularTanHalf(in[0]), double(kSpecularTanMaxError), double(specularTanHalf(s, in[0])))}};
+            return VectorCase{{{double(in[0])}}, {single(oracle::specularTanHalf(in[0]), double(kSpecularTanMaxError), double(specularTanHalf(s, in[0])))}};
         },
         1520);
 }

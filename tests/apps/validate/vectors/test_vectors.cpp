@@ -77,8 +77,8 @@ std::vector<Planted> plantedSlips()
     return {
         {"eq1.radiance", "the first sphere hides itself", [](const Row& r, std::size_t, double right) { return right * (1.0 - r("alpha", 0)); }},
         {"eq1.opacity", "transmittance in place of opacity", [](const Row&, std::size_t, double right) { return 1.0 - right; }},
-        {"eq1.step_opacity", "k left out",
-         [](const Row& r, std::size_t, double) { return 1.0 - std::pow(1.0 - std::min(r("a"), 1.0), r("length")); }},
+        {"eq1.step_opacity", "k left out", [](const Row& r, std::size_t, double) { return 1.0 - std::pow(1.0 - std::min(r("a"), 1.0), r("length")); }},
+        {"eq1.step_opacity_gpu", "the length left out", [](const Row& r, std::size_t, double) { return 1.0 - std::pow(1.0 - std::min(r("a"), 1.0), r("k")); }},
         {"eq1.transmittance", "2 for e", [](const Row& r, std::size_t, double) { return std::exp2(-r("k") * r("f")); }},
         {"eq2.reflected_radiance", "pi left out", [](const Row&, std::size_t, double right) { return right * 3.14159265358979; }},
         {"eq3.radiance", "not divided by the weights' sum", [](const Row&, std::size_t, double right) { return right * 16.0; }},
@@ -100,17 +100,20 @@ std::vector<Planted> plantedSlips()
              const double length = std::sqrt(dot(r, "alpha_n", 0, "alpha_n", 0)) / r("alpha");
              return length > 0.0 ? right / length : right;
          }},
-        {"eq8.normal_term", "negative not clamped",
-         [](const Row& r, std::size_t, double) { return dot(r, "alpha_n", 0, "v", 0) / r("alpha"); }},
-        {"eq9.weights", "texel centres at whole numbers", [](const Row& r, std::size_t i, double right) { return i < 64 ? right * (1.0 - std::fmod(r("u"), 0.125)) : right; }},
+        {"eq8.normal_term", "negative not clamped", [](const Row& r, std::size_t, double) { return dot(r, "alpha_n", 0, "v", 0) / r("alpha"); }},
+        {"eq9.weights", "texel centres at whole numbers",
+         [](const Row& r, std::size_t i, double right) { return i < 64 ? right * (1.0 - std::fmod(r("u"), 0.125)) : right; }},
         {"eq9.weights_sampler", "nearest for linear", [](const Row&, std::size_t, double right) { return right > 0.5 ? 1.0 : 0.0; }},
-        {"eq10.alpha_z", "not warped to the layer", [](const Row& r, std::size_t, double right) { return right * (r("depth_max") - r("depth_min")) + r("depth_min"); }},
+        {"eq10.alpha_z", "not warped to the layer",
+         [](const Row& r, std::size_t, double right) { return right * (r("depth_max") - r("depth_min")) + r("depth_min"); }},
         {"eq10.mean", "alpha not divided by", [](const Row& r, std::size_t, double) { return r("alpha_z"); }},
         {"eq11.alpha_z2", "square of the mean", [](const Row&, std::size_t, double right) { return right * right; }},
-        {"eq11.variance", "the square of the mean added", [](const Row& r, std::size_t, double) { return r("alpha_z2") / r("alpha") + std::pow(r("alpha_z") / r("alpha"), 2); }},
+        {"eq11.variance", "the square of the mean added",
+         [](const Row& r, std::size_t, double) { return r("alpha_z2") / r("alpha") + std::pow(r("alpha_z") / r("alpha"), 2); }},
         {"eq11.variance", "no floor", [](const Row& r, std::size_t, double) { return r("alpha_z2") / r("alpha") - std::pow(r("alpha_z") / r("alpha"), 2); }},
         {"eq12.phi", "erf without the root of 2", [](const Row& r, std::size_t, double) { return 0.5 * std::erfc(-r("x")); }},
-        {"eq12.phi_table", "a table of 64", [](const Row& r, std::size_t, double right) {
+        {"eq12.phi_table", "a table of 64",
+         [](const Row& r, std::size_t, double right) {
              const double h = 10.0 / 63.0, x = r("x"), left = std::floor((x + 5.0) / h) * h - 5.0;
              return std::abs(x) < 5.0 ? phi(left) + (x - left) / h * (phi(left + h) - phi(left)) : right;
          }},
@@ -126,10 +129,15 @@ std::vector<Planted> plantedSlips()
          }},
         {"eq13.membership", "ranges closed at both ends",
          [](const Row& r, std::size_t i, double) {
-             return r("depth") >= r("depth_min", i) && r("depth") <= r("depth_max", i) && r("n_dot_l") >= r("n_dot_l_min", i) && r("n_dot_l") <= r("n_dot_l_max", i) ? 1.0 : 0.0;
+             return r("depth") >= r("depth_min", i) && r("depth") <= r("depth_max", i) && r("n_dot_l") >= r("n_dot_l_min", i) &&
+                            r("n_dot_l") <= r("n_dot_l_max", i)
+                        ? 1.0
+                        : 0.0;
          }},
-        {"eq13.depth_min", "half the overlap", [](const Row& r, std::size_t i, double right) { return right + 0.25 * r("overlap") * (r("farthest") - r("nearest")) * (i ? 0.25 : 0.0); }},
-        {"eq13.depth_max", "no overlap", [](const Row& r, std::size_t i, double) { return r("nearest") + (r("farthest") - r("nearest")) * double(i + 1) / 4.0; }},
+        {"eq13.depth_min", "half the overlap",
+         [](const Row& r, std::size_t i, double right) { return right + 0.25 * r("overlap") * (r("farthest") - r("nearest")) * (i ? 0.25 : 0.0); }},
+        {"eq13.depth_max", "no overlap",
+         [](const Row& r, std::size_t i, double) { return r("nearest") + (r("farthest") - r("nearest")) * double(i + 1) / 4.0; }},
         {"eq14.radiance", "the decay left out",
          [](const Row& r, std::size_t c, double) {
              double sum = 0.0;
@@ -138,17 +146,22 @@ std::vector<Planted> plantedSlips()
          }},
         {"eq14.coverage", "1 where there is any", [](const Row&, std::size_t, double right) { return right > 0.0 ? 1.0 : 0.0; }},
         {"eq15.decay", "linear for smoothstep",
-         [](const Row& r, std::size_t, double right) { return right > 0.0 ? std::min({1.0, (r("z_c") - r("z_min")) / r("delta"), (r("z_max") - r("z_c")) / r("delta")}) : 0.0; }},
-        {"eq15.decay", "decays at the far end alone", [](const Row& r, std::size_t, double right) { return r("z_c") < r("z_min") + r("delta") && right > 0.0 ? 1.0 : right; }},
+         [](const Row& r, std::size_t, double right) {
+             return right > 0.0 ? std::min({1.0, (r("z_c") - r("z_min")) / r("delta"), (r("z_max") - r("z_c")) / r("delta")}) : 0.0;
+         }},
+        {"eq15.decay", "decays at the far end alone",
+         [](const Row& r, std::size_t, double right) { return r("z_c") < r("z_min") + r("delta") && right > 0.0 ? 1.0 : right; }},
         {"sec3.opacity", "a level too high", [](const Row& r, std::size_t, double right) { return 0.5 * (right + r("level2")); }},
         {"sec3.opacity_sampler", "border clamped", [](const Row& r, std::size_t, double right) { return right == 0.0 ? r("level0", 0) : right; }},
         {"sec3.mean", "the largest for the mean", [](const Row&, std::size_t, double right) { return right > 0.0 ? 1.0 : 0.0; }},
-        {"sec5.level", "the natural logarithm", [](const Row& r, std::size_t, double) { return std::max(std::log(r("diameter") / (2.0 * r("texel"))) + r("bias"), r("least")); }},
+        {"sec5.level", "the natural logarithm",
+         [](const Row& r, std::size_t, double) { return std::max(std::log(r("diameter") / (2.0 * r("texel"))) + r("bias"), r("least")); }},
         {"sec5.place", "v upwards", [](const Row&, std::size_t i, double right) { return i == 1 ? 1.0 - right : right; }},
         {"sec5.texel_size", "half a map for a whole", [](const Row&, std::size_t, double right) { return 0.5 * right; }},
         {"fig7.axis", "the wrong way round", [](const Row&, std::size_t i, double right) { return i == 1 ? -right : right; }},
         {"fig7.weight", "all the same", [](const Row&, std::size_t, double) { return 1.0 / 6.0; }},
-        {"fig7.specular_tan", "roughness not squared", [](const Row& r, std::size_t, double) { return std::min(std::tan(3.14159265 / 3), std::tan(2.0 * std::atan(std::min(r("roughness"), 0.9)))); }},
+        {"fig7.specular_tan", "roughness not squared",
+         [](const Row& r, std::size_t, double) { return std::min(std::tan(3.14159265 / 3), std::tan(2.0 * std::atan(std::min(r("roughness"), 0.9)))); }},
         {"table1.half_toward_zero", "to the nearest", [](const Row&, std::size_t, double right) { return right * (1.0 + 0x1p-11); }},
         {"table1.half_nearest_even", "toward zero", [](const Row&, std::size_t, double right) { return right * (1.0 - 0x1p-11); }},
         {"table1.float_from_half", "denormals to zero", [](const Row&, std::size_t, double right) { return std::abs(right) < 0x1p-14 ? 0.0 : right; }},
