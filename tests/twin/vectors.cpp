@@ -22,13 +22,27 @@ struct ShaderSet {
 const std::vector<ShaderSet>& shaderSets()
 {
     static const std::vector<ShaderSet> all = {
-        {"front_to_back"}, {"step_opacity"},      {"transmittance"},
-        {"reflected_radiance"}, {"direct_sum"},   {"product"},
-        {"layer_texel"},   {"normal_term"},       {"depth_moments"},
-        {"normal_cdf", {{"GAUSSIAN 1"}, {"GAUSSIAN 0"}}}, {"visibility", {{"GAUSSIAN 1"}, {"GAUSSIAN 0"}}}, {"sampler_weights"},
-        {"membership"},    {"layer_sum"},         {"decay"},
-        {"lrsm_level"},    {"projection"},        {"half", {{"GAUSSIAN 1"}, {"GAUSSIAN 1", "HALF_NEAREST_EVEN"}}},
-        {"half_bits"},     {"unorm16"},           {"log2"},
+        {"front_to_back"},
+        {"step_opacity"},
+        {"transmittance"},
+        {"reflected_radiance"},
+        {"direct_sum"},
+        {"product"},
+        {"layer_texel"},
+        {"normal_term"},
+        {"depth_moments"},
+        {"normal_cdf", {{"GAUSSIAN 1"}, {"GAUSSIAN 0"}}},
+        {"visibility", {{"GAUSSIAN 1"}, {"GAUSSIAN 0"}}},
+        {"sampler_weights"},
+        {"membership"},
+        {"layer_sum"},
+        {"decay"},
+        {"lrsm_level"},
+        {"projection"},
+        {"half", {{"GAUSSIAN 1"}, {"GAUSSIAN 1", "HALF_NEAREST_EVEN"}}},
+        {"half_bits"},
+        {"unorm16"},
+        {"log2"},
         {"exp2"},
     };
     return all;
@@ -74,7 +88,8 @@ std::vector<float> rowsOf(const std::string& folder, const Json& set)
     for (const Json& input : set["inputs"]) {
         const std::vector<float> values = floatsOf(readNpy(folder + "/" + input["file"].get<std::string>()));
         const std::size_t count = perCase(input);
-        for (std::size_t i = 0; i < cases; ++i) std::copy_n(values.begin() + std::ptrdiff_t(i * count), count, rows.begin() + std::ptrdiff_t(i * stride + first));
+        for (std::size_t i = 0; i < cases; ++i)
+            std::copy_n(values.begin() + std::ptrdiff_t(i * count), count, rows.begin() + std::ptrdiff_t(i * stride + first));
         first += count;
     }
     return rows;
@@ -121,7 +136,8 @@ Texture texelTexture()
 bool hasGpuForm(const Json& set, const Json& output)
 {
     const std::string name = output["name"];
-    return std::any_of(set["outputs"].begin(), set["outputs"].end(), [&](const Json& o) { return o["name"] == name + "_gpu" || o["name"] == name + "_sampler"; });
+    return std::any_of(set["outputs"].begin(), set["outputs"].end(),
+                       [&](const Json& o) { return o["name"] == name + "_gpu" || o["name"] == name + "_sampler"; });
 }
 
 void writeResults(const std::string& folder, const Json& set, const std::vector<float>& rows)
