@@ -98,24 +98,20 @@ std::string equationTitle(const std::string& equation)
 
 std::string verdictText(const Judgement& judgement)
 {
+    const auto are = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " is " : " are "); };
     const std::size_t ok = judgement.count(OutputVerdict::ok), wrong = judgement.count(OutputVerdict::wrong),
-                      unreadable = judgement.count(OutputVerdict::unreadable);
-    std::string text;
-    if (wrong) {
-        std::vector<std::string> titles;
-        for (const JudgedOutput& o : judgement.outputs)
-            if (const std::string title = equationTitle(o.output->equation);
-                o.verdict == OutputVerdict::wrong && std::find(titles.begin(), titles.end(), title) == titles.end())
-                titles.push_back(title);
-        text =
-            "Vectors: WRONG: " + joined(titles) + "; " + std::to_string(wrong) + " of " + std::to_string(ok + wrong) + " outputs are outside what is allowed";
-    } else if (ok) {
-        text = "Vectors: all " + std::to_string(ok) + " outputs that can be read are within what is allowed";
-    } else {
-        text = "Vectors: no output could be judged";
-    }
+                      unreadable = judgement.count(OutputVerdict::unreadable), missing = judgement.count(OutputVerdict::missing);
+    std::vector<std::string> titles;
+    for (const JudgedOutput& o : judgement.outputs)
+        if (const std::string title = equationTitle(o.output->equation);
+            o.verdict == OutputVerdict::wrong && std::find(titles.begin(), titles.end(), title) == titles.end())
+            titles.push_back(title);
+    std::string text = "Vectors: ";
+    if (wrong) text += "WRONG: " + joined(titles) + "; of " + std::to_string(ok + wrong) + " outputs " + are(wrong) + "outside what is allowed";
+    if (!wrong && ok) text += "of " + std::to_string(ok) + " outputs all are within what is allowed";
+    if (!wrong && !ok) text += "no output could be judged";
     if (unreadable) text += "; " + std::to_string(unreadable) + " cannot be read";
-    if (const std::size_t missing = judgement.count(OutputVerdict::missing)) text += "; " + std::to_string(missing) + " are not given";
+    if (missing) text += "; " + are(missing) + "not given";
     return text + ".";
 }
 

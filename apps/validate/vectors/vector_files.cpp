@@ -5,7 +5,7 @@
 #include "core/base/json_reader.h"
 #include "lrsm/gaussian_visibility.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
@@ -48,11 +48,22 @@ Json arrayJson(const VectorArray& array, std::size_t cases)
     return {{"name", array.name}, {"dtype", nameOf(array.dtype)}, {"shape", wholeShape(array, cases)}, {"unit", array.unit}, {"meaning", array.meaning}};
 }
 
+/// Cases of a kind stand together: "typical": [0, 96], half-open.
+Json kindsJson(const VectorSet& set)
+{
+    Json json = Json::object();
+    for (std::size_t i = 0; i < set.cases(); ++i) {
+        const std::string kind(nameOf(set.kinds[i]));
+        if (!json.contains(kind)) json[kind] = {i, i};
+        json[kind][1] = i + 1;
+    }
+    return json;
+}
+
 Json setJson(const VectorSet& set)
 {
-    Json json = {{"name", set.name},       {"meaning", set.meaning},  {"cases", set.cases()},
-                 {"kinds", Json::array()}, {"inputs", Json::array()}, {"outputs", Json::array()}};
-    for (const CaseKind kind : set.kinds) json["kinds"].push_back(nameOf(kind));
+    Json json = {{"name", set.name},        {"meaning", set.meaning},  {"cases", set.cases()},
+                 {"kinds", kindsJson(set)}, {"inputs", Json::array()}, {"outputs", Json::array()}};
     for (const VectorArray& input : set.inputs) {
         Json entry = arrayJson(input, set.cases());
         entry["file"] = inputFile(set, input);
@@ -88,7 +99,8 @@ VectorArray readArray(const JsonReader& json, std::size_t cases)
 {
     VectorArray array{.name = json["name"].text(), .shape = {}, .unit = json["unit"].text(), .meaning = json["meaning"].text()};
     array.dtype = dtypeByName(json["dtype"].text(), json["dtype"].path());
-    for (const JsonReader& extent : json["shape"].items()) array.shape.push_back(extent.count());
+    constexpr std::int64_t kMost = 1 << 24;  // extents of 0 are no cases
+    for (const JsonReader& extent : json["shape"].items()) array.shape.push_back(static_cast<std::size_t>(extent.whole(1, kMost)));
     if (array.shape.empty() || array.shape.front() != cases) json["shape"].fail("must begin with the number of cases");
     array.shape.erase(array.shape.begin());
     return array;
@@ -104,18 +116,24 @@ std::vector<double> readValues(const std::string& folder, const JsonReader& file
     return numbersOf(read);
 }
 
-CaseKind readKind(const JsonReader& json)
+std::vector<CaseKind> readKinds(const JsonReader& json, std::size_t cases)
 {
-    for (const CaseKind kind : {CaseKind::typical, CaseKind::worst, CaseKind::extreme})
-        if (json.text() == nameOf(kind)) return kind;
-    json.fail("must be typical, worst or extreme");
+    json.allowOnly({nameOf(CaseKind::typical), nameOf(CaseKind::worst), nameOf(CaseKind::extreme)});
+    std::vector<CaseKind> kinds(cases, CaseKind::typical);
+    for (const CaseKind kind : {CaseKind::worst, CaseKind::extreme}) {
+        const std::string name(nameOf(kind));
+        if (!json.has(name)) continue;
+        const std::vector<JsonReader> ends = json[name].items(2);
+        for (std::uint64_t i = ends[0].count(); i < std::min<std::uint64_t>(ends[1].count(), cases); ++i) kinds[i] = kind;
+    }
+    return kinds;
 }
 
 VectorSet readSet(const std::string& folder, const JsonReader& json)
 {
     VectorSet set{.name = json["name"].text(), .meaning = json["meaning"].text(), .inputs = {}, .outputs = {}, .kinds = {}};
-    for (const JsonReader& kind : json["kinds"].items()) set.kinds.push_back(readKind(kind));
-    if (json["cases"].count() != set.cases()) json["cases"].fail("must be how many kinds there are");
+    constexpr std::int64_t kMostCases = 1 << 24;
+    set.kinds = readKinds(json["kinds"], static_cast<std::size_t>(json["cases"].whole(1, kMostCases)));
     for (const JsonReader& entry : json["inputs"].items()) {
         set.inputs.push_back(readArray(entry, set.cases()));
         set.inputs.back().values = readValues(folder, entry["file"], set.inputs.back(), set.cases());
