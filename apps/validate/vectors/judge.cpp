@@ -34,20 +34,16 @@ std::string bareName(const std::string& name)
 }
 
 /// Names of the .npy files of a folder that are not the vectors' own, in order.
-std::vector<std::string> givenNames(const std::vector<VectorSet>& sets, const std::string& folder)
+std::vector<std::string> givenNames(const std::string& folder)
 {
     std::error_code error;
     std::vector<std::string> names;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
         if (at->path().extension() == ".npy") names.push_back(at->path().stem().string());
     if (error) throw InputError(folder, "cannot be listed: " + error.message());
-    std::erase_if(names, [&](const std::string& name) {
-        const std::string file = name + ".npy";
-        return std::any_of(sets.begin(), sets.end(), [&](const VectorSet& set) {
-            return std::any_of(set.inputs.begin(), set.inputs.end(), [&](const VectorArray& input) { return inputFile(set, input) == file; }) ||
-                   std::any_of(set.outputs.begin(), set.outputs.end(), [&](const VectorOutput& o) { return exactFile(o) == file || allowedFile(o) == file; });
-        });
-    });
+    // Inputs, exact results and what is allowed, of these vectors or of others written here before.
+    std::erase_if(names,
+                  [](const std::string& name) { return name.ends_with(".exact") || name.ends_with(".allowed") || name.find(".in.") != std::string::npos; });
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -149,7 +145,7 @@ JudgedOutput judgeValues(const VectorSet& set, const VectorOutput& output, const
 
 Judgement judgeFolder(const std::vector<VectorSet>& sets, const std::string& folder)
 {
-    std::vector<std::string> names = givenNames(sets, folder);
+    std::vector<std::string> names = givenNames(folder);
     Judgement judgement;
     for (const VectorSet& set : sets)
         for (const VectorOutput& output : set.outputs) {
