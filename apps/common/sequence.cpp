@@ -145,7 +145,7 @@ bool makeFrame(const SequenceJob& job, const SequenceFrame& frame, Json entry, c
     // Files that replace others do it one by one, this one last: until then the frame is none.
     std::error_code ignored;
     fs::remove(path / kFrameFile, ignored);
-    folder.commit();
+    folder.commit(job.earlier);
     return true;
 }
 

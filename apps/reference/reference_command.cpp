@@ -1,6 +1,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
+#include "apps/common/earlier_result.h"
 #include "apps/common/interrupts.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
@@ -146,7 +147,7 @@ std::optional<Traced> traceTo(OutputFolder& folder, const ReferencePlan& plan, c
 {
     const ReferenceArguments& arguments = plan.arguments;
     const std::string path = folder.path().string();
-    sayOnce(loadMessages(scene));
+    sayOnce(loadMessages(scene, arguments.verbose));
     Progress progress(arguments.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, plan.settings);
@@ -189,7 +190,8 @@ int traceFrames(const ReferencePlan& plan, const FrameRange& range)
                         .make =
                             [&](const SequenceFrame& frame, OutputFolder& folder) {
                                 return traceTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, true, frame.stop, sayOnce).has_value();
-                            }},
+                            },
+                        .earlier = leftBy("reference", {kSpecularPicture})},
                        arguments);
 }
 
@@ -197,6 +199,7 @@ int runReference(const ReferenceArguments& arguments)
 {
     const ReferencePlan plan = planReference(arguments);
     const ThreadLimit threads(arguments.threads);
+    refuseOtherResult(arguments.output, "reference");
     if (const std::optional<FrameRange> range = chosenFrames(arguments.sequence)) return traceFrames(plan, *range);
 
     OutputFolder folder(arguments.output);  // fails now rather than after hours
@@ -209,7 +212,7 @@ int runReference(const ReferenceArguments& arguments)
         std::cerr << "lrsm: interrupted; what is done is in " << arguments.output << " (--resume continues)" << std::endl;
         return kInterruptedCode;
     }
-    folder.commit();
+    folder.commit(leftBy("reference", {kSpecularPicture}));
     const Json& json = traced->json;
     if (arguments.json)
         std::cout << jsonText(json);

@@ -13,7 +13,8 @@ void noteExtensions(const Document& document, Asset& asset)
 {
     std::string ignored;
     for (const std::string& name : document.model.extensionsUsed)
-        if (!isRead(name)) ignored += (ignored.empty() ? "" : ", ") + name;
+        if (!isRead(name) && name != "KHR_materials_unlit" && name != "KHR_materials_emissive_strength")  // materials say it by name
+            ignored += (ignored.empty() ? "" : ", ") + name;
     if (!ignored.empty()) asset.notes.push_back("extensions ignored: " + ignored);
 }
 
