@@ -11,7 +11,6 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <new>
 #include <system_error>
 #include <thread>
@@ -29,12 +28,11 @@ int report(const std::string& message, int code)
     return code;
 }
 
-/// `help COMMAND` is `COMMAND --help`, `help` and nothing at all are `--help`.
+/// `help COMMAND` is `COMMAND --help`, `help` is `--help`.
 std::vector<std::string> plainArguments(int argc, char** argv)
 {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-    if (arguments.empty()) return {"--help"};
-    if (arguments[0] != "help") return arguments;
+    if (arguments.empty() || arguments[0] != "help") return arguments;
     std::erase(arguments, "help");
     arguments.push_back("--help");
     return arguments;
@@ -65,20 +63,22 @@ void refuseUnknownCommand(const CLI::App& program, const std::string& word)
 }
 
 /// Where the system grants fewer threads than there are processors: said, and kept to.
-std::unique_ptr<lrsm::ThreadLimit> fewerThreads()
+void keepToGrantedThreads()
 {
     const int processors = std::max(1, int(std::thread::hardware_concurrency())), granted = lrsm::grantedThreads(processors);
-    if (granted == processors) return {};
+    if (granted == processors) return;
     std::cerr << "lrsm: note: the system grants " << granted << (granted == 1 ? " thread" : " threads") << " where there are " << processors
               << " processors (ulimit -u, a container's limit, address space): slower, the same results" << std::endl;
-    return std::make_unique<lrsm::ThreadLimit>(granted);
+    ::setenv("OPENIMAGEIO_THREADS", "1", 0);  // its pool is made when first used, one a processor
+    // Never lifted: oneTBB would start the threads that are refused as soon as it were.
+    [[maybe_unused]] static const lrsm::ThreadLimit* const kept = new lrsm::ThreadLimit(granted);
 }
 
 int runChosen(const std::vector<lrsm::Command>& commands)
 {
     for (const lrsm::Command& command : commands)
         if (command.parser->parsed()) {
-            const std::unique_ptr<lrsm::ThreadLimit> threads = fewerThreads();
+            keepToGrantedThreads();
             const int code = command.run();
             // Output lost on a full disk is a failure too.
             if (!std::cout.flush()) throw lrsm::MachineError("standard output", "cannot be written");
@@ -132,6 +132,10 @@ int main(int argc, char** argv)
 
     try {
         if (!arguments.empty() && !arguments[0].starts_with("-")) refuseUnknownCommand(program, arguments[0]);
+        if (arguments.empty()) {
+            std::cerr << program.help();
+            return 2;
+        }
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
         return runChosen(commands);
     } catch (const CLI::ParseError& error) {
