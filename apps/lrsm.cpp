@@ -43,7 +43,8 @@ std::string lessMemory(const CLI::App& program)
 {
     const std::vector<CLI::App*> chosen = program.get_subcommands();
     const auto takes = [&](const char* option) { return !chosen.empty() && chosen[0]->get_option_no_throw(option) != nullptr; };
-    if (takes("--set")) return "lower --set voxel_resolution=N, rsm_resolution=N, depth_layers=N, normal_layers=N or --size (lrsm info SCENE says what each takes)";
+    if (takes("--set"))
+        return "lower --set voxel_resolution=N, rsm_resolution=N, depth_layers=N, normal_layers=N or --size (lrsm info SCENE says what each takes)";
     return takes("--size") ? "lower --size" : "close other programs, or use a machine with more of it";
 }
 
@@ -124,9 +125,9 @@ int main(int argc, char** argv)
     program.set_version_flag("-v,--version", LRSM_VERSION);
     program.require_subcommand(1);
     program.footer("lrsm help COMMAND says what a command takes. Exit codes: 0 done, 1 a check failed, 2 bad usage or input, 3 the machine failed us.");
-    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),    lrsm::addRender(program),   lrsm::addReference(program), lrsm::addMerge(program),
-                                                 lrsm::addCompare(program), lrsm::addValidate(program), lrsm::addCapture(program),   lrsm::addCheck(program),
-                                                 lrsm::addBench(program),   lrsm::addSettings(program), lrsm::addSweep(program),     lrsm::addTune(program),
+    const std::vector<lrsm::Command> commands = {lrsm::addInfo(program),    lrsm::addRender(program),    lrsm::addReference(program), lrsm::addMerge(program),
+                                                 lrsm::addCompare(program), lrsm::addValidate(program),  lrsm::addCapture(program),   lrsm::addCheck(program),
+                                                 lrsm::addBench(program),   lrsm::addSettings(program),  lrsm::addSweep(program),     lrsm::addTune(program),
                                                  lrsm::addMan(program),     lrsm::addCompletion(program)};
     const std::vector<std::string> arguments = plainArguments(argc, argv);
 

@@ -127,8 +127,10 @@ std::string manPage(const CLI::App& program)
 std::string bashCompletion(const CLI::App& program)
 {
     const std::vector<const CLI::App*> commands = commandsOf(program);
-    const auto keys = joined(describeSettings(), [](const SettingInfo& info) { return info.key + "="; }, " ");
-    std::string script = "# bash completion for lrsm, made by `lrsm completion bash`\n_lrsm() {\n    local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]}\n";
+    const auto keys = joined(
+        describeSettings(), [](const SettingInfo& info) { return info.key + "="; }, " ");
+    std::string script =
+        "# bash completion for lrsm, made by `lrsm completion bash`\n_lrsm() {\n    local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]}\n";
     script += "    local commands='" + joined(commands, &CLI::App::get_name, " ") + " help'\n";
     script += "    local scenes='" + joined(builtinScenes(), &BuiltinSceneInfo::name, " ") + "'\n";
     script += "    local presets='" + joined(presetInfos(), &PresetInfo::name, " ") + "'\n";
@@ -147,7 +149,8 @@ std::string bashCompletion(const CLI::App& program)
         }
         script += "        *) options='" + joined(all, {}, " ") + "' words=$(" + positional + ");;\n        esac;;\n";
     }
-    script += "    esac\n    case $cur in\n    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$cur\"));;\n    *) local IFS=$'\\n'; COMPREPLY=($words);;\n    esac\n";
+    script +=
+        "    esac\n    case $cur in\n    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$cur\"));;\n    *) local IFS=$'\\n'; COMPREPLY=($words);;\n    esac\n";
     script += "    [ \"$prev\" != --set ] || compopt -o nospace\n}\ncomplete -o filenames -F _lrsm lrsm\n";
     return script;
 }

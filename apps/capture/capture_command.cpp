@@ -192,7 +192,8 @@ Command addCapture(CLI::App& program)
     parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
     parser->add_option("--only", options->only, "passes whose buffers are kept: " + passNames())
         ->check(passNameError, "")
-        ->delimiter(',')->allow_extra_args(false);
+        ->delimiter(',')
+        ->allow_extra_args(false);
     parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");
     parser->add_flag("--no-pictures", options->noPictures, "leave out the EXR files and the contact sheet");
     return {parser, [options] { return run(*options); }};

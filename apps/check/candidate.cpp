@@ -96,8 +96,8 @@ class CandidateReader {
     {
         if (strangers_.empty()) return "";
         const bool one = strangers_.size() == 1;
-        return std::to_string(strangers_.size()) + (one ? " buffer is" : " buffers are") + " not in the candidate's manifest, and left out as of another run: " +
-               strangers_.front() + (one ? "" : " ...");
+        return std::to_string(strangers_.size()) + (one ? " buffer is" : " buffers are") +
+               " not in the candidate's manifest, and left out as of another run: " + strangers_.front() + (one ? "" : " ...");
     }
 
   private:

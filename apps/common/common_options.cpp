@@ -90,7 +90,7 @@ void addPictureOptions(CLI::App& parser, CommonOptions& options)
 
 void addRunOptions(CLI::App& parser, CommonOptions& options)
 {
-    parser.add_option("--threads", options.threads, "0: all the machine has; the picture does not depend on it")->check(CLI::Range(0, 1024));
+    parser.add_option("--threads", options.threads, "0: all the machine has; the picture does not depend on it")->check(CLI::Range(0, 1024))->type_name("N");
     parser.add_flag("-q,--quiet", options.quiet, "no progress, no summary");
     parser.add_flag("-v,--verbose", options.verbose, "every note on the scene, not one a kind");
     parser.add_flag("--json", options.json, "JSON on standard output");

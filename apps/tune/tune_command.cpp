@@ -134,7 +134,8 @@ std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& s
         const auto same = [&](const TunePoint& point) { return point.named.settings == named.settings; };
         if (std::any_of(points.begin(), points.end(), same)) continue;
 
-        points.push_back({.named = named, .megabytes = double(maps.bytes(named.settings)) * 1e-6, .probe = {}, .verified = {}, .skipped = {}, .trimmed = trimmed});
+        points.push_back(
+            {.named = named, .megabytes = double(maps.bytes(named.settings)) * 1e-6, .probe = {}, .verified = {}, .skipped = {}, .trimmed = trimmed});
     }
     return points;
 }

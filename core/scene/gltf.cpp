@@ -79,7 +79,8 @@ Image<Rgba8> decode(const Asset& asset, std::size_t index)
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, int(index), &error, &warning, 0, 0, encoded.bytes.data(), int(encoded.bytes.size()), nullptr) ||
         decoded.component != 4 || (decoded.bits != 8 && decoded.bits != 16))
-        throw InputError(place, "\"" + encoded.name + "\" cannot be decoded: it is damaged, or none of PNG, JPEG and WebP" + conversionAdvice(isKtx(encoded.bytes) ? "KHR_texture_basisu" : ""));
+        throw InputError(place, "\"" + encoded.name + "\" cannot be decoded: it is damaged, or none of PNG, JPEG and WebP" +
+                                    conversionAdvice(isKtx(encoded.bytes) ? "KHR_texture_basisu" : ""));
     return toRgba8(decoded);
 }
 
@@ -213,7 +214,8 @@ FloatStep coarsestStep(const Asset& asset, const Pose& pose)
         const Node& node = asset.nodes[std::size_t(n)];
         if (node.mesh < 0 || node.skin >= 0) continue;
         const DMat4& world = pose.worldFromNode[std::size_t(n)];
-        const double scale = largestInstance(node) * std::sqrt(std::max({glm::dot(world[0], world[0]), glm::dot(world[1], world[1]), glm::dot(world[2], world[2])}));
+        const double scale =
+            largestInstance(node) * std::sqrt(std::max({glm::dot(world[0], world[0]), glm::dot(world[1], world[1]), glm::dot(world[2], world[2])}));
         float largest = 0.0f;
         for (const Primitive& primitive : asset.meshes[std::size_t(node.mesh)].primitives)
             for (const Vec3& p : primitive.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

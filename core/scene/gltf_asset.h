@@ -23,7 +23,7 @@ struct Node {
     int parent = -1;
     std::vector<int> children;
     int mesh = -1, skin = -1, camera = -1, light = -1;
-    std::vector<float> weights;  ///< of morph targets; empty: the mesh's
+    std::vector<float> weights;    ///< of morph targets; empty: the mesh's
     std::vector<DMat4> instances;  ///< EXT_mesh_gpu_instancing: its mesh once for each, node from instance; empty: once
 };
 
@@ -101,10 +101,10 @@ struct Asset {
     std::vector<Mesh> meshes;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
-    std::vector<Material> materials;  ///< the last one is glTF's default material
+    std::vector<Material> materials;     ///< the last one is glTF's default material
     std::vector<UvSets> materialUvSets;  ///< one a material
-    std::vector<Texture> textures;    ///< images and mips by openGltf; empty until then
-    std::vector<int> textureImage;    ///< index into `images` for each texture, -1: none
+    std::vector<Texture> textures;       ///< images and mips by openGltf; empty until then
+    std::vector<int> textureImage;       ///< index into `images` for each texture, -1: none
     std::vector<EncodedImage> images;
     std::vector<LocalLight> lights;
     std::vector<Camera> cameras;

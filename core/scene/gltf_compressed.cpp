@@ -45,7 +45,9 @@ MeshoptStream meshoptStream(const Json& json)
     using Mode = MeshoptStream::Mode;
     using Filter = MeshoptStream::Filter;
     const std::string mode = json["mode"].get<std::string>(), filter = json.value("filter", "NONE");
-    return {.mode = mode == "ATTRIBUTES" ? Mode::attributes : mode == "TRIANGLES" ? Mode::triangles : Mode::indices,
+    return {.mode = mode == "ATTRIBUTES"  ? Mode::attributes
+                    : mode == "TRIANGLES" ? Mode::triangles
+                                          : Mode::indices,
             .filter = filter == "OCTAHEDRAL"    ? Filter::octahedral
                       : filter == "QUATERNION"  ? Filter::quaternion
                       : filter == "EXPONENTIAL" ? Filter::exponential
@@ -62,8 +64,8 @@ void decompressView(Document& document, std::size_t i)
     const MeshoptStream stream = meshoptStream(*json);
     // A byte of the file holds a few hundred of the result at most: a file cannot ask for all memory.
     constexpr std::uint64_t kMaxRatio = 4096;
-    const auto bytes =
-        bytesIn(document, json->at("buffer").get<std::size_t>(), json->value("byteOffset", std::uint64_t(0)), json->at("byteLength").get<std::uint64_t>(), path);
+    const auto bytes = bytesIn(document, json->at("buffer").get<std::size_t>(), json->value("byteOffset", std::uint64_t(0)),
+                               json->at("byteLength").get<std::uint64_t>(), path);
     if (stream.count > bytes.size() * kMaxRatio) document.fail(path + ".count", "is more than its bytes can hold");
     std::optional<Bytes> decoded = decodeMeshopt(bytes, stream);
     if (!decoded) document.fail(path, "cannot be decoded: it is damaged, or of a newer version of the format");
@@ -114,14 +116,13 @@ void decompressPrimitive(Document& document, std::size_t mesh, std::size_t p)
         if (accessor == primitive["attributes"].end()) continue;
         accessors.push_back(accessor->get<std::size_t>());
         const Json& form = document.json["accessors"][accessors.back()];
-        wanted.push_back({.id = id.get<std::uint32_t>(),
-                          .componentType = form["componentType"].get<int>(),
-                          .components = componentsOf(form["type"].get<std::string>())});
+        wanted.push_back(
+            {.id = id.get<std::uint32_t>(), .componentType = form["componentType"].get<int>(), .components = componentsOf(form["type"].get<std::string>())});
     }
     const Json& view = document.json["bufferViews"][json->at("bufferView").get<std::size_t>()];
-    std::optional<DracoMesh> decoded = decodeDraco(bytesIn(document, view["buffer"].get<std::size_t>(), view.value("byteOffset", std::uint64_t(0)),
-                                                           view["byteLength"].get<std::uint64_t>(), path),
-                                                   wanted);
+    std::optional<DracoMesh> decoded = decodeDraco(
+        bytesIn(document, view["buffer"].get<std::size_t>(), view.value("byteOffset", std::uint64_t(0)), view["byteLength"].get<std::uint64_t>(), path),
+        wanted);
     if (!decoded) document.fail(path, "cannot be decoded: it is damaged, or lacks an attribute that is asked for");
     for (std::size_t a = 0; a < wanted.size(); ++a) repoint(document, accessors[a], std::move(decoded->attributes[a]), decoded->points, path);
 

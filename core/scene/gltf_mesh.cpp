@@ -115,7 +115,9 @@ Primitive readPrimitive(const Document& document, const tinygltf::Primitive& sou
     // glTF: without normals the tangents are to be ignored too.
     if (!primitive.normals.empty()) primitive.tangents = reader.vectors<Vec4>("TANGENT", quantized ? kQuantizedTangent : "VEC4 f");
     const UvSets& sets = materialUvSets[std::size_t(primitive.material)];
-    const auto uv = [&](int set) { return set < 0 ? std::vector<Vec2>{} : reader.vectors<Vec2>("TEXCOORD_" + std::to_string(set), quantized ? kQuantizedUv : kUv); };
+    const auto uv = [&](int set) {
+        return set < 0 ? std::vector<Vec2>{} : reader.vectors<Vec2>("TEXCOORD_" + std::to_string(set), quantized ? kQuantizedUv : kUv);
+    };
     primitive.uv0 = uv(sets[0]);
     primitive.uv1 = uv(sets[1]);
     primitive.colors = reader.colors();

@@ -150,8 +150,8 @@ Node readNode(const Document& document, std::size_t i)
     if (extensions == json.end()) return node;
     if (extensions->contains("KHR_lights_punctual")) node.light = (*extensions)["KHR_lights_punctual"]["light"].get<int>();
     if (extensions->contains("EXT_mesh_gpu_instancing") && node.mesh >= 0)
-        node.instances = readInstances(document, (*extensions)["EXT_mesh_gpu_instancing"]["attributes"],
-                                       at("nodes", i) + ".extensions.EXT_mesh_gpu_instancing.attributes");
+        node.instances =
+            readInstances(document, (*extensions)["EXT_mesh_gpu_instancing"]["attributes"], at("nodes", i) + ".extensions.EXT_mesh_gpu_instancing.attributes");
     return node;
 }
 

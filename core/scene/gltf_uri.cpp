@@ -37,7 +37,8 @@ bool isFile(const std::filesystem::path& path)
 /// "C:/...", "/..." or "file:...": of the machine that wrote it.
 bool isAbsolute(const std::string& name)
 {
-    return name.starts_with('/') || lowerCase(name).starts_with("file:") || (name.size() > 2 && std::isalpha(static_cast<unsigned char>(name[0])) && name[1] == ':');
+    return name.starts_with('/') || lowerCase(name).starts_with("file:") ||
+           (name.size() > 2 && std::isalpha(static_cast<unsigned char>(name[0])) && name[1] == ':');
 }
 
 }  // namespace

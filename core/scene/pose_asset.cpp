@@ -265,8 +265,8 @@ Scene poseAsset(const Asset& asset, const Pose& pose)
             const Mesh& mesh = asset.meshes[std::size_t(node.mesh)];
             for (const Primitive& primitive : mesh.primitives)
                 for (std::size_t i = 0; i < std::max<std::size_t>(node.instances.size(), 1) && !primitive.triangles.empty(); ++i)
-                    scene.meshes.push_back(worldMesh(primitive, mesh, node, node.instances.empty() ? world : world * node.instances[i],
-                                                     pose.weights[std::size_t(n)], skinning));
+                    scene.meshes.push_back(
+                        worldMesh(primitive, mesh, node, node.instances.empty() ? world : world * node.instances[i], pose.weights[std::size_t(n)], skinning));
         }
         if (node.light >= 0) addLight(asset.lights[std::size_t(node.light)], node, world, pose.turned[std::size_t(n)], scene);
         if (node.camera >= 0) addCamera(asset.cameras[std::size_t(node.camera)], node, world, pose.turned[std::size_t(n)], scene);

@@ -70,8 +70,8 @@ TEST_CASE("meshopt: filters are undone to what their bits hold", "[decode]")
     const std::vector<float> normals = {0, 0, 1, 0, 0.6f, 0, 0.8f, 0, 0, -0.6f, -0.8f, 0};
     std::vector<std::int16_t> octahedral(12);
     meshopt_encodeFilterOct(octahedral.data(), 3, 8, 16, normals.data());
-    const std::optional<Bytes> decoded = decodeMeshopt(encodedVertices(bytesOf(octahedral), 3, 8),
-                                                       {.filter = MeshoptStream::Filter::octahedral, .count = 3, .stride = 8});
+    const std::optional<Bytes> decoded =
+        decodeMeshopt(encodedVertices(bytesOf(octahedral), 3, 8), {.filter = MeshoptStream::Filter::octahedral, .count = 3, .stride = 8});
     REQUIRE(decoded);
     std::vector<std::int16_t> read(12);
     std::memcpy(read.data(), decoded->data(), decoded->size());
@@ -82,7 +82,8 @@ TEST_CASE("meshopt: filters are undone to what their bits hold", "[decode]")
     std::vector<std::uint32_t> exponential(6);
     meshopt_encodeFilterExp(exponential.data(), 2, 12, 24, positions.data()
 #if MESHOPTIMIZER_VERSION >= 200
-                            , meshopt_EncodeExpSeparate
+                                                               ,
+                            meshopt_EncodeExpSeparate
 #endif
     );
     CHECK(decodeMeshopt(encodedVertices(bytesOf(exponential), 2, 12), {.filter = MeshoptStream::Filter::exponential, .count = 2, .stride = 12}) ==

@@ -49,23 +49,40 @@ TEST_CASE("repairs give the scene of the right file and a note", "[scene][gltf][
     };
     const std::vector<Repair> repairs = {
         {"2 null values", [](GltfBuilder& b) { b.node()["skin"] = nullptr, b.json["materials"][0]["normalTexture"] = nullptr; }},
-        {"1 null value", [](GltfBuilder& b) { b.json["scenes"][0]["nodes"] = {0, nullptr, 1}; }},
+        {"1 null value",
+         [](GltfBuilder& b) {
+             b.json["scenes"][0]["nodes"] = {0, nullptr, 1};
+         }},
         {"1 null value", [](GltfBuilder& b) { b.json["cameras"] = nullptr; }},
         {"1 null value", [](GltfBuilder& b) { light(b)["range"] = nullptr; }},
         {"", [](GltfBuilder& b) { b.node()["mesh"] = 0.0, b.json["accessors"][0]["count"] = 3.0, b.json["scene"] = 0.0; }},
         {"1 byteStride of 0", [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 0; }},
         {"1 byteStride of 0", [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 0.0; }},
         {"", [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 12; }},
-        {"2 unknown wrap modes", [](GltfBuilder& b) { b.json["samplers"][0] = {{"wrapS", 10496}, {"wrapT", "REPEAT"}, {"magFilter", "LINEAR"}}; }},
+        {"2 unknown wrap modes",
+         [](GltfBuilder& b) {
+             b.json["samplers"][0] = {{"wrapS", 10496}, {"wrapT", "REPEAT"}, {"magFilter", "LINEAR"}};
+         }},
         {"1 unknown wrap mode", [](GltfBuilder& b) { b.json["samplers"][0]["wrapT"] = 33069; }},
         {"1 light with a range of 0", [](GltfBuilder& b) { light(b)["range"] = 0; }},
-        {"1 light colour of four numbers", [](GltfBuilder& b) { light(b)["color"] = {1, 1, 1, 1}; }},
+        {"1 light colour of four numbers",
+         [](GltfBuilder& b) {
+             light(b)["color"] = {1, 1, 1, 1};
+         }},
         {"without cone angles", [](GltfBuilder& b) { light(b).erase("spot"); },
-         [](GltfBuilder& b) { light(b)["spot"] = {{"innerConeAngle", 0}, {"outerConeAngle", 0.78539816}}; }},
+         [](GltfBuilder& b) {
+             light(b)["spot"] = {{"innerConeAngle", 0}, {"outerConeAngle", 0.78539816}};
+         }},
         {"hard edge", [](GltfBuilder& b) { light(b)["spot"]["innerConeAngle"] = 0.5; }},
-        {"hard edge", [](GltfBuilder& b) { light(b)["spot"]["innerConeAngle"] = 0.50000003; }, [](GltfBuilder& b) { light(b)["spot"]["innerConeAngle"] = 0.5; }},
-        {"hard edge", [](GltfBuilder& b) { light(b)["spot"] = {{"innerConeAngle", 1.5707964}, {"outerConeAngle", 1.5707964}}; },
-         [](GltfBuilder& b) { light(b)["spot"] = {{"innerConeAngle", 1.5707963}, {"outerConeAngle", 1.5707963}}; }},
+        {"hard edge", [](GltfBuilder& b) { light(b)["spot"]["innerConeAngle"] = 0.50000003; },
+         [](GltfBuilder& b) { light(b)["spot"]["innerConeAngle"] = 0.5; }},
+        {"hard edge",
+         [](GltfBuilder& b) {
+             light(b)["spot"] = {{"innerConeAngle", 1.5707964}, {"outerConeAngle", 1.5707964}};
+         },
+         [](GltfBuilder& b) {
+             light(b)["spot"] = {{"innerConeAngle", 1.5707963}, {"outerConeAngle", 1.5707963}};
+         }},
         {"2 material factors",
          [](GltfBuilder& b) {
              b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1.0000002, 0.5, 0.5, 1};
@@ -203,7 +220,8 @@ TEST_CASE("textures read whichever two sets of coordinates their material names"
     }
     b.json["images"] = {{{"uri", "none.png"}}};
     b.json["textures"] = {Json::object()};  // without a source: ignored, but its coordinates are numbered before
-    b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 3}}}, {"metallicRoughnessTexture", {{"index", 0}, {"texCoord", 2}}}}}}};
+    b.json["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 3}}}, {"metallicRoughnessTexture", {{"index", 0}, {"texCoord", 2}}}}}}};
     b.primitive()["material"] = 0;
     Scene scene = b.load();
     CHECK(scene.meshes[0].uv0[0] == Vec2(3, 0));
