@@ -95,7 +95,7 @@ int runChosen(const std::vector<lrsm::Command>& commands)
     try {
         if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
     } catch (const std::exception& error) {
-        const bool refused = std::string_view(error.what()).find("Resource temporarily unavailable") != std::string_view::npos;
+        const bool refused = dynamic_cast<const std::system_error*>(&error) || std::string_view(error.what()).starts_with("pthread_create");
         line = refused ? "threads: the system refuses one that is needed (ulimit -u, or a container's limit, allows too few)"
                        : std::string("unexpected: ") + error.what();
     } catch (...) {

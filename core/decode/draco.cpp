@@ -23,7 +23,7 @@ bool convertPoints(const draco::Mesh& mesh, const draco::PointAttribute& attribu
 bool convert(const draco::Mesh& mesh, const DracoAttribute& wanted, Bytes& out)
 {
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(wanted.id);
-    if (!attribute || wanted.components < 1 || wanted.components > 4 || attribute->num_components() != wanted.components) return false;
+    if (!attribute || wanted.components < 1 || wanted.components > 4 || attribute->num_components() < wanted.components) return false;
     switch (wanted.componentType) {
     case 5120: return convertPoints<std::int8_t>(mesh, *attribute, wanted.components, out);
     case 5121: return convertPoints<std::uint8_t>(mesh, *attribute, wanted.components, out);

@@ -32,9 +32,9 @@ struct Conversion {
 };
 /// What another program makes readable.
 constexpr auto kConversions = std::to_array<Conversion>({
-    {"KHR_texture_basisu", "extract the KTX2 textures to PNG, for instance with `ktx extract` of KTX-Software, and refer to those"},
-    {"EXT_texture_avif", "convert the textures, for instance with `gltf-transform png IN OUT`"},
-    {"KHR_meshopt_compression", "write it with EXT_meshopt_compression or without compression"},
+    {"KHR_texture_basisu", "decompress its KTX2 textures first, for instance with `gltf-transform ktxdecompress IN OUT`"},
+    {"EXT_texture_avif", "convert its textures to PNG, JPEG or WebP first"},
+    {"KHR_meshopt_compression", "write it with EXT_meshopt_compression, or without compression"},
 });
 
 struct Container {

@@ -8,13 +8,13 @@ constexpr float kMaxOuterConeAngle = 1.5533430f;  // 89 degrees
 
 void readCone(const Document& document, const Json& json, const std::string& path, Light& light, Asset& asset)
 {
-    constexpr float kRounding = 1e-4f;  // of the angle: what conversions between degrees, radians and float leave
+    constexpr float kRounding = 1e-3f;  // of the angle: what conversions between degrees, radians and float leave
     const auto spot = json.find("spot");
     if (spot == json.end()) {
         asset.notes.push_back("light \"" + light.name + "\": without cone angles, so the default ones are taken");
         return;
     }
-    light.innerConeAngle = std::max(spot->value("innerConeAngle", 0.0f), 0.0f);
+    light.innerConeAngle = spot->value("innerConeAngle", 0.0f);
     light.outerConeAngle = spot->value("outerConeAngle", 0.78539816f);
     if (light.innerConeAngle > light.outerConeAngle * (1.0f + kRounding)) document.fail(path + ".spot", "innerConeAngle must be smaller than outerConeAngle");
     if (light.innerConeAngle >= light.outerConeAngle) {

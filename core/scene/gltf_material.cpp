@@ -109,6 +109,8 @@ Material readMaterial(const Document& document, std::size_t i, Asset& asset)
         material.alphaCutoff = 0.5f;
         asset.notes.push_back("material \"" + material.name + "\": alpha blending replaced by a mask at 0.5");
     }
+    if (const std::string mode = source.alphaMode; !mode.empty() && mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+        asset.notes.push_back("material \"" + material.name + "\": unknown alphaMode \"" + mode + "\" taken as OPAQUE");
     if (const auto block = json.find("pbrMetallicRoughness"); block != json.end()) {
         material.baseColorTexture = textureUse(*block, "baseColorTexture");
         material.metallicRoughnessTexture = textureUse(*block, "metallicRoughnessTexture");

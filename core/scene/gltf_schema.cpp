@@ -144,7 +144,7 @@ constexpr auto kRules = std::to_array<Rule>({
     {"extensions.KHR_lights_punctual.lights.*.color", Kind::numbers, {"3", 0, 1e6}},
     {"extensions.KHR_lights_punctual.lights.*.intensity", Kind::number, {0, 1e12}},
     {"extensions.KHR_lights_punctual.lights.*.range", Kind::number, {1e-12, 1e30}},
-    {"extensions.KHR_lights_punctual.lights.*.spot.innerConeAngle", Kind::number, {-1e-6, kHalfPi + 1e-6}},
+    {"extensions.KHR_lights_punctual.lights.*.spot.innerConeAngle", Kind::number, {0, kHalfPi + 1e-6}},
     {"extensions.KHR_lights_punctual.lights.*.spot.outerConeAngle", Kind::number, {1e-4, kHalfPi + 1e-6}},
 });
 

@@ -100,6 +100,7 @@ std::optional<std::string> otherFileName(const std::string& uri, const std::stri
     std::replace(rawSlashes.begin(), rawSlashes.end(), '\\', '/');
     std::vector<std::string> names = {uri, slashes, rawSlashes};
     if (isAbsolute(slashes)) names.push_back(slashes.substr(slashes.rfind('/') + 1));
+    if (const std::size_t end = slashes.find_first_of("?#"); end != std::string::npos) names.push_back(slashes.substr(0, end));  // of an address
     for (const std::string& name : names)
         if (!name.empty() && isFile(folder / name)) return name;
     return {};

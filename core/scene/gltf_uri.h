@@ -19,7 +19,7 @@ std::string decodeUri(const std::string& uri);
 std::string encodeUri(const std::string& name);
 
 /// Where no file of the URI's name lies beside `file`: the name of one that does if back-slashes are slashes, escapes are letters, or the folders of another
-/// machine are left out. Nothing where there is none, or where the URI is right.
+/// machine, or an address's query, are left out. Nothing where there is none, or where the URI is right.
 std::optional<std::string> otherFileName(const std::string& uri, const std::string& file);
 
 }  // namespace lrsm::gltf
