@@ -56,7 +56,10 @@ GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& o
 Gathered gatherPixels(const GatherMethod& method, const GatherInput& input, int rows, PassLog& log)
 {
     Gathered light = method.gather(input, log);
-    if (light.filter4x4) light.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(light.irradiance, input.gbuffer, rows); });
+    if (!light.filter4x4) return light;
+    light.irradiance = log.run("filter", kPicturePass, [&] { return filterIrradiance(light.irradiance, input.gbuffer, rows); });
+    if (!light.lobeWeight.empty())
+        light.specular = log.run("specular filter", kPicturePass, [&] { return filterSpecular(light.specular, light.lobeWeight, input.gbuffer, rows); });
     return light;
 }
 

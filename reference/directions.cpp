@@ -43,25 +43,8 @@ Vec3 coneDirection(const Vec3& axis, float cosHalf, UnitPoint xi)
 
 Vec3 lobeDirection(const Surface& surface, const Vec3& toViewer, UnitPoint xi)
 {
-    const float alpha = lobeAlpha(surface);
-    const Mat3 basis = basisFromNormal(surface.normal);
-    const Vec3 viewer = glm::transpose(basis) * toViewer;
-
-    // Stretched to a hemisphere, the visible normals are a disk seen from the viewer, its far half squeezed.
-    const Vec3 stretched = glm::normalize(Vec3(alpha * viewer.x, alpha * viewer.y, std::max(viewer.z, 1e-6f)));
-    const Mat3 side = basisFromNormal(stretched);
     const Disk disk = diskPoint(xi);
-    // The squeezed axis must lie in the plane of the viewer and the pole.
-    const float planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const Vec3 across = planar2 > 0.0f ? Vec3(-stretched.y, stretched.x, 0.0f) / std::sqrt(planar2) : side[0];
-    const Vec3 upward = glm::cross(stretched, across);
-    const float squeeze = 0.5f * (1.0f + stretched.z);
-    const float y = (1.0f - squeeze) * std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x)) + squeeze * disk.y;
-    const float z = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x - y * y));
-    const Vec3 normal = disk.x * across + y * upward + z * stretched;
-
-    const Vec3 half = basis * glm::normalize(Vec3(alpha * normal.x, alpha * normal.y, std::max(0.0f, normal.z)));
-    return glm::normalize(mirrored(toViewer, half));
+    return reflectLobe(surface.normal, lobeAlpha(surface), toViewer, Vec2(disk.x, disk.y));
 }
 
 float lobeDensity(const Surface& surface, const Vec3& toViewer, const Vec3& toLight)

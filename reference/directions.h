@@ -18,8 +18,7 @@ inline Vec3 mirrored(const Vec3& toViewer, const Vec3& normal)
     return 2.0f * glm::dot(toViewer, normal) * normal - toViewer;
 }
 
-/// Direction of a GGX reflection: the half vector is drawn from the distribution of normals visible to the viewer (Heitz, "Sampling the GGX
-/// Distribution of Visible Normals", JCGT 7(4), 2018). May point below the surface: its lobe is then 0.
+/// Direction of a GGX reflection (reflectLobe). May point below the surface: its lobe is then 0.
 Vec3 lobeDirection(const Surface& surface, const Vec3& toViewer, UnitPoint xi);
 
 /// Density of lobeDirection: D_v(h) / (4 <v.h>).

@@ -2,6 +2,7 @@
 
 #include "apps/capture/fill.h"
 #include "apps/capture/tolerances.h"
+#include "conetrace/frame/tiles.h"
 
 #include <algorithm>
 
@@ -16,11 +17,6 @@ constexpr const char *kIndices = "", *kAtlas = "rc.atlas", *kDiffuse = "rc.diffu
 std::size_t mostCaches(const DescribedFrame& frame)
 {
     return std::min(std::size_t(frame.settings.caches.maxCaches), std::size_t(frame.width) * std::size_t(frame.height));
-}
-
-std::size_t tilesAlong(int size, int tile)
-{
-    return std::size_t((size + tile - 1) / tile);
 }
 
 void shape(std::vector<Buffer>& buffers, const std::string& name, std::initializer_list<std::size_t> extents)
@@ -57,14 +53,9 @@ std::vector<T> allOf(const Capture& capture, const std::string& name, Dtype dtyp
     return copyFrom<T>(capture, name, dtype, capture.at(name).elements() * sizeOf(dtype) / sizeof(T));
 }
 
-std::vector<Vec4> texelsOf(const Capture& capture, const std::string& name)
+std::vector<Vec4> allTexelsOf(const Capture& capture, const std::string& name)
 {
-    const Buffer& buffer = capture.at(name);
-    if (buffer.dtype == Dtype::f4) return allOf<Vec4>(capture, name, Dtype::f4);
-    const auto halves = valuesOf<std::uint16_t>(capture, name, Dtype::f2, buffer.elements());
-    std::vector<Vec4> texels(halves.size() / 4);
-    for (std::size_t i = 0; i < halves.size(); ++i) texels[i / 4][int(i % 4)] = floatFromHalf(halves[i]);
-    return texels;
+    return texelsOf(capture, name, capture.at(name).elements() / 4);
 }
 
 void addAtlas(Catalogue& out, const DescribedFrame& frame, int level)
@@ -95,7 +86,8 @@ void refuseUnsorted(const std::vector<std::uint32_t>& values, std::size_t most, 
 void describeClusters(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const auto width = std::size_t(frame.width), height = std::size_t(frame.height);
-    const std::size_t across = tilesAlong(frame.width, frame.settings.caches.tile), down = tilesAlong(frame.height, frame.settings.caches.tile);
+    const auto across = std::size_t(tilesAlong(frame.width, frame.settings.caches.tile)),
+               down = std::size_t(tilesAlong(frame.height, frame.settings.caches.tile));
     const auto list = [&](const std::string& name, std::size_t count, const std::string& axis, const std::string& meaning) {
         out.add(name, Dtype::u4, {count}, {axis}, {}, {meaning, kIndices, ""}, tolerances::kClusters);
     };
@@ -207,7 +199,7 @@ PixelClusters clustersFromCapture(const Capture& capture)
     clusters.tilesY = static_cast<int>(axes.shape[0]);
     clusters.tilesX = static_cast<int>(axes.shape[1]);
     clusters.tile = capture.settings.caches.tile;
-    while (clusters.tilesX > 1 && tilesAlong(capture.width, clusters.tile) > axes.shape[1]) clusters.tile *= 2;
+    while (clusters.tilesX > 1 && std::size_t(tilesAlong(capture.width, clusters.tile)) > axes.shape[1]) clusters.tile *= 2;
     clusters.axes = allOf<NormalAxes>(capture, "rc.axes", Dtype::f4);
     clusters.keys = allOf<std::uint32_t>(capture, "rc.keys", Dtype::u4);
     clusters.pixels = allOf<std::uint32_t>(capture, "rc.pixels", Dtype::u4);
@@ -244,15 +236,15 @@ CacheAtlas filledFromCapture(const Capture& capture)
     atlas.resolution = settings.resolution;
     atlas.preExposure = capture.preExposure;
     atlas.half = settings.storage == Storage::gpu;
-    atlas.levels.push_back(texelsOf(capture, mipName(kAtlas, 0)));
+    atlas.levels.push_back(allTexelsOf(capture, mipName(kAtlas, 0)));
     return atlas;
 }
 
 CacheAtlas atlasFromCapture(const Capture& capture)
 {
     CacheAtlas atlas = filledFromCapture(capture);
-    for (int level = 1; atlas.resolution >> level >= 1; ++level) atlas.levels.push_back(texelsOf(capture, mipName(kAtlas, level)));
-    atlas.diffuse = texelsOf(capture, kDiffuse);
+    for (int level = 1; atlas.resolution >> level >= 1; ++level) atlas.levels.push_back(allTexelsOf(capture, mipName(kAtlas, level)));
+    atlas.diffuse = allTexelsOf(capture, kDiffuse);
     return atlas;
 }
 

@@ -2,6 +2,9 @@
 
 #include "apps/capture/capture.h"
 #include "core/base/errors.h"
+#include "core/base/formats.h"
+#include "core/base/math.h"
+#include "core/base/parallel.h"
 
 #include <cassert>
 #include <cstring>
@@ -57,6 +60,20 @@ std::vector<T> copyFrom(const Capture& capture, const std::string& name, Dtype d
     std::vector<T> values(count);
     if (count) std::memcpy(values.data(), bytes.data(), count * sizeof(T));
     return values;
+}
+
+/// Texels of four channels, stored as halves or as float32.
+inline std::vector<Vec4> texelsOf(const Capture& capture, const std::string& name, std::size_t count)
+{
+    if (capture.at(name).dtype == Dtype::f4) return copyFrom<Vec4>(capture, name, Dtype::f4, count);
+    constexpr std::size_t kChannels = 4, kTexelsPerTask = std::size_t(1) << 16;
+    const auto halves = valuesOf<std::uint16_t>(capture, name, Dtype::f2, count * kChannels);
+    std::vector<Vec4> texels(count);
+    parallelFor(count, kTexelsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t c = 0; c < kChannels; ++c) texels[i][int(c)] = floatFromHalf(halves[i * kChannels + c]);
+    });
+    return texels;
 }
 
 }  // namespace lrsm

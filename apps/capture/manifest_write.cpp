@@ -3,6 +3,7 @@
 #include "apps/capture/tables.h"
 #include "apps/common/describe.h"
 #include "conetrace/frame/direct.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/shadow_map.h"
 #include "core/base/elementary.h"
 #include "core/scene/brdf.h"
@@ -179,7 +180,8 @@ Json constantsJson()
             {"shadow_max_bias_slope", kMaxBiasSlope},
             {"shadow_snapping_texels", kSnappingTexels},
             {"shadow_grazing_cosine", kGrazingCosine},
-            {"min_specular_alpha", kMinSpecularAlpha}};
+            {"min_specular_alpha", kMinSpecularAlpha},
+            {"least_sampled_roughness", kLeastSampledRoughness}};
 }
 
 Json toleranceJson(const Tolerance& t)

@@ -24,7 +24,7 @@ void keep(const PassOutput& output, std::size_t, Capture& capture)
     if (const T* made = output.as<T>()) toBuffers(*made, capture.buffers);
 }
 
-constexpr char kDirect[] = "direct.radiance", kFilter[] = "filter.irradiance", kSmooth[] = "smooth.irradiance";
+constexpr char kDirect[] = "direct.radiance", kFilter[] = "filter.irradiance", kSmooth[] = "smooth.irradiance", kSpecularFilter[] = "filter.specular";
 template <const char* name>
 void keepPicture(const PassOutput& output, std::size_t, Capture& capture)
 {
@@ -215,11 +215,14 @@ const std::vector<PassRow> kRows = {
     {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones", "rc gather"},
      .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
      .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
+    {.family = "specular filter", .specular = true, .exists = filtersLobes, .reads = {"gbuffer", "cones", "vct cones"},
+     .describe = describeSpecularFilter, .record = keepPicture<kSpecularFilter>, .rerun = rerunSpecularFilter,
+     .sameTexel = {"cones.specular", "cones.lobe_weight", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.roughness"}},
     {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "rc gather", "filter"},
      .describe = describeSmooth, .record = keepPicture<kSmooth>, .rerun = rerunSmooth},
-    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "rc gather", "filter", "smooth"},
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "rc gather", "filter", "specular filter", "smooth"},
      .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
-     .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "cones.specular", "direct.radiance", "composite.diffuse",
+     .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "filter.specular", "cones.specular", "direct.radiance", "composite.diffuse",
                    "composite.specular"}},
 };
 // clang-format on
@@ -250,9 +253,9 @@ const PassRow* findPassRow(const std::string& pass)
     return found == passRows().end() ? nullptr : &*found;
 }
 
-bool existsIn(const PassRow& row, const Settings& settings)
+bool existsIn(const PassRow& row, const Settings& settings, const Requirements& needs)
 {
-    return !row.exists || row.exists(settings);
+    return (needs.specular || !row.specular) && (!row.exists || row.exists(settings));
 }
 
 bool isGiven(const std::string& pass)
@@ -276,7 +279,7 @@ HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
                                        : settings.layers.halfRounding;
 }
 
-std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights)
+std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, const Requirements& needs, std::size_t lights)
 {
     std::vector<std::string> inputs;
     const PassRow* row = findPassRow(pass);
@@ -285,7 +288,7 @@ std::vector<std::string> inputsOf(const std::string& pass, const Settings& setti
     if (row->readsBesides) std::ranges::copy(row->readsBesides(settings), std::back_inserter(families));
     for (const std::string& family : families) {
         const PassRow* input = findPassRow(family);
-        if (input && !existsIn(*input, settings)) continue;
+        if (input && !existsIn(*input, settings, needs)) continue;
         const bool all = input && input->perLight && !row->perLight;
         for (std::size_t light = 0; light < (all ? lights : 1); ++light) inputs.push_back(input ? passName(*input, all ? light : lightOfPass(pass)) : family);
     }
@@ -326,7 +329,7 @@ std::vector<Buffer> describeBuffers(const DescribedFrame& frame)
 {
     Catalogue out;
     const auto describe = [&](const PassRow& row, std::size_t light) {
-        if (!existsIn(row, frame.settings)) return;
+        if (!existsIn(row, frame.settings, frame.needs)) return;
         out.pass = passName(row, light);
         row.describe(out, frame, light);
     };

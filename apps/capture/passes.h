@@ -14,6 +14,7 @@ struct PassRow {
     bool perLight = false;
     bool given = false;                                  ///< an input of the frame, no pass of it: never recorded from one, never run
     std::vector<std::string> stages = {};                ///< of the settings that it is tried with when a candidate is wrong (SettingInfo::stage)
+    bool specular = false;                               ///< only frames of scenes with a specular part have it
     bool (*exists)(const Settings& settings) = nullptr;  ///< has a frame by these settings the pass? nullptr: every one has
     /// Families that it reads, where they exist. Of one with a pass a light: its own light's if it has a light itself, else all.
     std::vector<std::string> reads = {};
@@ -37,7 +38,7 @@ const std::vector<PassRow>& passRows();
 /// The row of "rsm 0"; nullptr when there is none.
 const PassRow* findPassRow(const std::string& pass);
 bool isGiven(const std::string& pass);
-bool existsIn(const PassRow& row, const Settings& settings);
+bool existsIn(const PassRow& row, const Settings& settings, const Requirements& needs);
 
 /// "lrsm 1" -> 1; 0 without a number.
 std::size_t lightOfPass(const std::string& pass);
@@ -45,7 +46,7 @@ std::size_t lightOfPass(const std::string& pass);
 HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass);
 
 /// Passes that a pass reads, "scene" and "tables" among them.
-std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, std::size_t lights);
+std::vector<std::string> inputsOf(const std::string& pass, const Settings& settings, const Requirements& needs, std::size_t lights);
 
 /// As on a command line: is `pass` one of those asked for, or is none asked for? "voxel-mips" is "voxel mips", "lrsm0" is "lrsm 0", "lrsm" every light's.
 bool isAskedFor(const std::vector<std::string>& asked, const std::string& pass);

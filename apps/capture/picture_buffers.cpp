@@ -2,6 +2,7 @@
 
 #include "apps/capture/fill.h"
 #include "apps/capture/tolerances.h"
+#include "conetrace/frame/lobe.h"
 
 namespace lrsm {
 
@@ -25,6 +26,16 @@ Image<T> imageFrom(const Capture& capture, const std::string& name, Dtype dtype 
 }
 
 }  // namespace
+
+bool samplesLobes(const Settings& settings)
+{
+    return (settings.method == Method::lrsm || settings.method == Method::vct) && SpecularLobes(settings.cones).sampling();
+}
+
+bool filtersLobes(const Settings& settings)
+{
+    return samplesLobes(settings) && settings.cones.set.filter;
+}
 
 void describeGBuffer(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
@@ -59,14 +70,23 @@ void describeCones(Catalogue& out, const DescribedFrame& frame, std::size_t)
             tolerances::kCones);
     out.picture("cones.irradiance", width, height, kRgb, {"pi times the weighted sum of the diffuse cones", kPicture, kIrradianceUnit}, tolerances::kCones);
     out.picture("cones.opacity", width, height, {}, {"weighted mean opacity of the diffuse cones", kPicture, ""}, tolerances::kConeOpacity);
-    if (frame.needs.specular)
-        out.picture("cones.specular", width, height, kRgbOpacity, {"I and opacity of the specular cone", kPicture, kRadianceUnit}, tolerances::kCones);
+    if (!frame.needs.specular) return;
+    out.picture("cones.specular", width, height, kRgbOpacity, {"I and opacity of the specular cone", kPicture, kRadianceUnit}, tolerances::kCones);
+    if (samplesLobes(frame.settings))
+        out.picture("cones.lobe_weight", width, height, {}, {"what the specular cone's direction counts in the mean over the lobe", kPicture, ""},
+                    tolerances::kSurface);
 }
 
 void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     out.picture("filter.irradiance", frame.width, frame.height, kRgb, {"irradiance averaged over 4x4 pixels of the same surface", kPicture, kIrradianceUnit},
                 tolerances::kFilter);
+}
+
+void describeSpecularFilter(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    out.picture("filter.specular", frame.width, frame.height, kRgb,
+                {"mean radiance over the lobe: 4x4 pixels of the same surface, by their lobe weights", kPicture, kRadianceUnit}, tolerances::kFilter);
 }
 
 void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t)
@@ -119,6 +139,7 @@ void toBuffers(const Gathered& gathered, std::vector<Buffer>& buffers)
 {
     copyTo(buffers, "cones.irradiance", gathered.irradiance.texels);
     copyTo(buffers, "cones.opacity", gathered.opacity.texels);
+    copyTo(buffers, "cones.lobe_weight", gathered.lobeWeight.texels);
 }
 
 void toBuffers(const ConeRecord& cones, std::vector<Buffer>& buffers)
@@ -136,6 +157,7 @@ Gathered gatheredFromCapture(const Capture& capture)
         const auto cones = copyFrom<Vec4>(capture, "cones.specular", Dtype::f4, pixelsOf(capture));
         gathered.specular = Image<Vec3>(capture.width, capture.height);
         for (std::size_t i = 0; i < cones.size(); ++i) gathered.specular.texels[i] = Vec3(cones[i]);
+        if (samplesLobes(capture.settings)) gathered.lobeWeight = imageFrom<float>(capture, "cones.lobe_weight");
     }
     return gathered;
 }
@@ -158,6 +180,12 @@ Image<Vec3> filteredFromCapture(const Capture& capture)
 Image<Vec3> irradianceFromCapture(const Capture& capture)
 {
     return capture.settings.cones.set.smoothingPasses() > 0 ? pictureFromCapture(capture, "smooth.irradiance") : filteredFromCapture(capture);
+}
+
+Image<Vec3> specularFromCapture(const Capture& capture)
+{
+    if (!capture.needs.specular) return {};
+    return filtersLobes(capture.settings) ? pictureFromCapture(capture, "filter.specular") : gatheredFromCapture(capture).specular;
 }
 
 }  // namespace lrsm

@@ -7,10 +7,15 @@
 /// The buffers of the passes that make pictures, from "gbuffer" to "composite". What comes back has the very bits that went in.
 namespace lrsm {
 
+/// Does a specular cone look along a point of the lobe, and are those averaged over 4x4 pixels? As far as the scene has a specular part.
+bool samplesLobes(const Settings& settings);
+bool filtersLobes(const Settings& settings);
+
 void describeGBuffer(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeDirect(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeCones(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeFilter(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeSpecularFilter(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeSmooth(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeComposite(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 
@@ -28,5 +33,7 @@ Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name);
 Image<Vec3> filteredFromCapture(const Capture& capture);
 /// The irradiance that the composite reads: that of the last filter that ran.
 Image<Vec3> irradianceFromCapture(const Capture& capture);
+/// The mean radiance over the specular lobe that the composite reads; empty without specular parts.
+Image<Vec3> specularFromCapture(const Capture& capture);
 
 }  // namespace lrsm

@@ -92,7 +92,7 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     for (const PassRow& row : passRows())
         if (row.recordFrame) row.recordFrame(frame, capture);
     finish(capture.buffers);
-    for (const PassReport& pass : frame.passes) capture.passes.push_back({pass.name, inputsOf(pass.name, settings, scene.lights.size()), pass.sha256});
+    for (const PassReport& pass : frame.passes) capture.passes.push_back({pass.name, inputsOf(pass.name, settings, needs, scene.lights.size()), pass.sha256});
     return capture;
 }
 

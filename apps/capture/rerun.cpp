@@ -177,6 +177,12 @@ void rerunFilter(const Capture& inputs, std::size_t, Rerun& made)
     toBuffers(filterIrradiance(pictureFromCapture(inputs, "cones.irradiance"), gbufferFromCapture(inputs)), "filter.irradiance", made.outputs);
 }
 
+void rerunSpecularFilter(const Capture& inputs, std::size_t, Rerun& made)
+{
+    const Gathered gathered = gatheredFromCapture(inputs);
+    toBuffers(filterSpecular(gathered.specular, gathered.lobeWeight, gbufferFromCapture(inputs), inputs.height), "filter.specular", made.outputs);
+}
+
 void rerunSmooth(const Capture& inputs, std::size_t, Rerun& made)
 {
     toBuffers(smoothIrradiance(filteredFromCapture(inputs), gbufferFromCapture(inputs), inputs.settings.cones.set.smoothingPasses()), "smooth.irradiance",
@@ -185,9 +191,7 @@ void rerunSmooth(const Capture& inputs, std::size_t, Rerun& made)
 
 void rerunComposite(const Capture& inputs, std::size_t, Rerun& made)
 {
-    Image<Vec3> specular;
-    if (inputs.needs.specular) specular = gatheredFromCapture(inputs).specular;
-    IndirectLight indirect = shadeIndirect(gbufferFromCapture(inputs), inputs.camera, irradianceFromCapture(inputs), specular);
+    IndirectLight indirect = shadeIndirect(gbufferFromCapture(inputs), inputs.camera, irradianceFromCapture(inputs), specularFromCapture(inputs));
     toBuffers(indirect.diffuse, "composite.diffuse", made.outputs);
     toBuffers(indirect.specular, "composite.specular", made.outputs);
     // The sum of the candidate's own parts, so that a wrong part does not make the sum wrong.

@@ -53,6 +53,7 @@ void rerunFill(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunConvolve(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunCachedLight(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunFilter(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunSpecularFilter(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunSmooth(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunComposite(const Capture& inputs, std::size_t light, Rerun& made);
 

@@ -1,7 +1,9 @@
 #include "apps/capture/tables.h"
 
+#include "apps/capture/picture_buffers.h"
 #include "apps/capture/tolerances.h"
 #include "conetrace/caches/gather.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/specular_albedo.h"
 #include "conetrace/vct/gather.h"
 
@@ -85,6 +87,10 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
     if (needs.specular)
         tables.specularAlbedo =
             tableOf("tables.specular_albedo", Dtype::f4, {SpecularAlbedo::kRoughnessSize, SpecularAlbedo::kCosineSize, 2}, SpecularAlbedo().table());
+    if (needs.specular && samplesLobes(settings)) {
+        const auto points = lobePoints();
+        tables.lobePoints = tableOf("tables.lobe_points", Dtype::f4, {kRotations, 3}, std::vector<LobePoint>(points.begin(), points.end()));
+    }
     return tables;
 }
 
@@ -103,6 +109,7 @@ void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
     rows(tables.cosineShare, {"node_row", "node_column", "row", "column"}, {},
          {"share of each texel of a cache in the irradiance of a node's normal", "cache", ""});
     rows(tables.solidAngle, {"row", "column"}, {}, {"of a cache's texels", "cache", "sr"});
+    rows(tables.lobePoints, {"rotation"}, {"x", "y", "weight"}, {"points of the specular lobe: in the unit disk of visible normals", "", ""});
     rows(tables.specularAlbedo, {"roughness", "root_n_dot_v"}, {"scale", "bias"},
          {"directional albedo of the lobe = F0 scale + bias; over roughness and sqrt(n.v), both 0 .. 1", "", ""});
 }

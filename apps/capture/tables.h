@@ -17,9 +17,12 @@ struct Table {
 struct CaptureTables {
     GatherPlan plan;
     NormalCdf phi;
-    Table directions, rotation, schedules, steps, gaussian, specularAlbedo, cosineShare, solidAngle;
+    Table directions, rotation, schedules, steps, gaussian, specularAlbedo, lobePoints, cosineShare, solidAngle;
 
-    std::vector<const Table*> all() const { return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo, &cosineShare, &solidAngle}; }
+    std::vector<const Table*> all() const
+    {
+        return {&directions, &rotation, &schedules, &steps, &gaussian, &specularAlbedo, &lobePoints, &cosineShare, &solidAngle};
+    }
 };
 CaptureTables makeTables(const Requirements& needs, const Settings& settings);
 

@@ -53,20 +53,6 @@ void toDense(const BrickMap& map, const std::vector<Vec4>& texels, Buffer& buffe
         each(allocate<std::uint16_t>(buffer), [](float v) { return halfFromFloat(v, HalfRounding::nearestEven); });
 }
 
-/// All texels of a dense grid.
-std::vector<Vec4> denseTexels(const Capture& capture, const std::string& name, int resolution)
-{
-    const std::size_t count = cubed(resolution);
-    if (capture.at(name).dtype == Dtype::f4) return copyFrom<Vec4>(capture, name, Dtype::f4, count);
-    const auto halves = valuesOf<std::uint16_t>(capture, name, Dtype::f2, count * kVolumeChannels);
-    std::vector<Vec4> texels(count);
-    parallelFor(count, std::size_t(1) << 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t c = 0; c < kVolumeChannels; ++c) texels[i][int(c)] = floatFromHalf(halves[i * kVolumeChannels + c]);
-    });
-    return texels;
-}
-
 /// Marks the first voxel of every texel that is not 0 and lies in no brick that `held` has.
 void markTexels(const std::vector<Vec4>& texels, int level, const BrickMap* held, BitGrid& occupied)
 {
@@ -183,7 +169,7 @@ VoxelSurface surfaceFromCapture(const Capture& capture, const BitGrid& bits)
 RadianceVolume radianceFromCapture(const Capture& capture)
 {
     const int n = capture.grid.resolution;
-    const std::vector<Vec4> base = denseTexels(capture, kBase, n), normals = denseTexels(capture, kNormal, n);
+    const std::vector<Vec4> base = texelsOf(capture, kBase, cubed(n)), normals = texelsOf(capture, kNormal, cubed(n));
     BitGrid occupied;
     occupied.grid = capture.grid;
     occupied.bricks.assign(predictBitGridBytes(n) / sizeof(std::uint64_t), 0);
@@ -198,7 +184,7 @@ RadianceVolume radianceFromCapture(const Capture& capture)
     for (int level = 1; level < volume.levels(); ++level)
         for (std::size_t d = 0; d < kFaces.size(); ++d) {
             std::vector<Vec4>& face = faces[std::size_t(level)][d];
-            face = denseTexels(capture, mipName(kFaces[d], level), n >> level);
+            face = texelsOf(capture, mipName(kFaces[d], level), cubed(n >> level));
             markTexels(face, level, &volume.maps[std::size_t(level)], occupied);
         }
     if (occupied.bricks != before) volume.maps = mapBricks(occupied);  // mips say that something is where the base says nothing is

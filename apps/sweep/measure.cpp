@@ -191,7 +191,7 @@ Settings Calibration::settings()
                       .rsmMinLevel = 0.0f,
                       .gaussian = GaussianMethod::polynomial,
                       .gaussianTableSize = 1024};
-    s.cones.specular = {.aperture = SpecularAperture::roughness, .apertureDegrees = 10.0f};
+    s.cones.specular = {.direction = SpecularDirection::mirror, .aperture = SpecularAperture::roughness, .apertureDegrees = 10.0f};
     s.force = {.everything = false};
     return s;
 }

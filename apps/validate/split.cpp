@@ -1,6 +1,7 @@
 #include "apps/validate/split.h"
 
 #include "conetrace/frame/cones.h"
+#include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/lrsm/gather.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
@@ -132,6 +133,9 @@ Gathered gatherByRays(const GatherInput& input, Visibility visibility, int strat
         return gatherRays(input.gbuffer, world);
     });
     byRays.specular = std::move(byCones.specular);
+    if (cones.set.filter && !byCones.lobeWeight.empty())
+        byRays.specular =
+            log.run("specular filter", kPicturePass, [&] { return filterSpecular(byRays.specular, byCones.lobeWeight, input.gbuffer, input.gbuffer.height); });
     return byRays;
 }
 

@@ -1,5 +1,6 @@
 #include "conetrace/caches/clusters.h"
 
+#include "conetrace/frame/tiles.h"
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
 #include "core/scene/camera.h"
@@ -178,7 +179,7 @@ PixelClusters clusterPixels(const GBuffer& gbuffer, const Camera& camera, const 
 {
     for (int doublings = 0;; ++doublings) {
         const int tile = settings.tile << doublings;
-        const int tilesX = (gbuffer.width + tile - 1) / tile, tilesY = (gbuffer.height + tile - 1) / tile;
+        const int tilesX = tilesAlong(gbuffer.width, tile), tilesY = tilesAlong(gbuffer.height, tile);
         std::vector<TileClusters> tiles(std::size_t(tilesX) * std::size_t(tilesY));
         const TileClusterer cluster(gbuffer, camera, tile, settings.minPixels);
         parallelFor(tiles.size(), kTilesAtOnce, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,6 @@
 #include "conetrace/caches/evaluate.h"
 
-#include "conetrace/frame/pixel_cones.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 #include "core/base/elementary.h"
 

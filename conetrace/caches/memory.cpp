@@ -3,6 +3,7 @@
 #include "conetrace/caches/atlas.h"
 #include "conetrace/caches/clusters.h"
 #include "conetrace/caches/places.h"
+#include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/memory.h"
 
 namespace lrsm {
@@ -34,8 +35,7 @@ Clustered clusteredOf(const MemoryQuestion& question)
         out.caches = std::min(std::size_t(settings.maxCaches), out.pixels);
         out.covered = out.pixels;
     }
-    const auto tilesAlong = [&](int size) { return std::size_t((size + tile - 1) / tile); };
-    out.tiles = tilesAlong(question.width) * tilesAlong(question.height);
+    out.tiles = std::size_t(tilesAlong(question.width, tile)) * std::size_t(tilesAlong(question.height, tile));
     return out;
 }
 

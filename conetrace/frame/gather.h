@@ -27,29 +27,33 @@ struct GatherInput {
 
 /// Indirect light at each pixel's surface; 0 where nothing was drawn.
 struct Gathered {
-    Image<Vec3> irradiance;  ///< W/m^2, before the receiver's albedo
-    Image<Vec3> specular;    ///< mean radiance over the specular lobe, W/(m^2 sr); empty when the scene has no specular part
-    Image<float> opacity;    ///< mean opacity of the hemisphere, 0 open .. 1 closed
-    bool filter4x4 = false;  ///< directions alternate over 4x4 pixels: the frame averages the irradiance over them
+    Image<Vec3> irradiance;   ///< W/m^2, before the receiver's albedo
+    Image<Vec3> specular;     ///< mean radiance over the specular lobe, W/(m^2 sr); empty when the scene has no specular part
+    Image<float> lobeWeight;  ///< where lobes are sampled: `specular` is of one direction, and counts as much (LobeDirection); else empty
+    Image<float> opacity;     ///< mean opacity of the hemisphere, 0 open .. 1 closed
+    bool filter4x4 = false;   ///< directions alternate over 4x4 pixels: the frame averages the irradiance over them
     Counters counters;
 };
 
 /// Pictures of the G-buffer's size, all 0.
-inline Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs)
+/// `lobes`: with weights of the lobes' directions.
+inline Gathered emptyGathered(const GBuffer& gbuffer, const Requirements& needs, bool lobes = false)
 {
     Gathered out;
     out.irradiance = Image<Vec3>(gbuffer.width, gbuffer.height);
     out.opacity = Image<float>(gbuffer.width, gbuffer.height);
     if (needs.specular) out.specular = Image<Vec3>(gbuffer.width, gbuffer.height);
+    if (needs.specular && lobes) out.lobeWeight = Image<float>(gbuffer.width, gbuffer.height);
     return out;
 }
 
-/// Irradiance with opacity, and specular: half x4 on a GPU.
+/// Irradiance with opacity, and specular with its weight: half x4 on a GPU.
 template <class Visit>
 void forEachArray(const Gathered& gathered, Visit&& visit)
 {
     forEachArray(gathered.irradiance, visit);
     forEachArray(gathered.specular, visit);
+    if (!gathered.lobeWeight.empty()) visit(gathered.lobeWeight.texels, ArrayTraits{0});
     visit(gathered.opacity.texels, ArrayTraits{0});
 }
 

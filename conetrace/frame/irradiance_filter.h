@@ -8,7 +8,10 @@ namespace lrsm {
 /// 1/16), over the pixels that lie on the same surface: normals within about 25 degrees, and each pixel within a tenth of their
 /// distance from the other's tangent plane. A constant field stays constant. `rows`: of the picture, from the top; what is below stays as it is.
 Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows);
-/// The same of one pixel.
+/// The same of the mean radiance over specular lobes that are sampled (lobe.h): means weighted by `lobeWeight` besides. Narrow lobes stay as they are.
+Image<Vec3> filterSpecular(const Image<Vec3>& specular, const Image<float>& lobeWeight, const GBuffer& gbuffer, int rows);
+/// Each of one pixel.
+Vec3 filterSpecularPixel(const Image<Vec3>& specular, const Image<float>& lobeWeight, const GBuffer& gbuffer, int rows, int x, int y);
 Vec3 filterPixel(const Image<Vec3>& irradiance, const GBuffer& gbuffer, int rows, int x, int y);
 inline Image<Vec3> filterIrradiance(const Image<Vec3>& irradiance, const GBuffer& gbuffer)
 {

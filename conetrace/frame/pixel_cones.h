@@ -51,20 +51,12 @@ PixelGather gatherDiffuse(const GatherPlan& plan, int setsPerPixel, const Receiv
     return {sum.irradiance * (kPi * perSet), sum.opacity * perSet};
 }
 
-/// Towards what a mirror at the receiver would show; as long as toEye.
-inline Vec3 mirrorDirection(const Vec3& normal, const Vec3& toEye)
-{
-    return 2.0f * glm::dot(normal, toEye) * normal - toEye;
-}
-
-/// The specular cone about the mirror direction; below the surface it sees nothing.
+/// The specular cone of a direction of the lobe (lobe.h); below the surface it sees nothing.
 template <class March, class Recorder>
-Vec3 gatherSpecular(const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness, const March& march, Recorder& recorder)
+Vec3 gatherSpecular(const GatherPlan& plan, const Receiver& receiver, const Vec3& direction, float roughness, const March& march, Recorder& recorder)
 {
-    const Vec3 mirror = mirrorDirection(receiver.normal, toEye);
-    if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
-    const ConeRay ray = coneRay(receiver, glm::normalize(mirror));
-    return recordedCone(march, ray, 1.0f, plan.specularSchedule(roughness), recorder).radiance;
+    if (!(glm::dot(direction, receiver.geometricNormal) > 0.0f)) return Vec3(0.0f);
+    return recordedCone(march, coneRay(receiver, direction), 1.0f, plan.specularSchedule(roughness), recorder).radiance;
 }
 
 }  // namespace lrsm

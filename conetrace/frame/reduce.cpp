@@ -80,18 +80,19 @@ void blend(const Image<T>& values, const BlockWeights& weights, float total, std
     out.texels[pixel] = sum / total;
 }
 
-/// Pixels that stand alone have one rotation each: averaged with what is around them on their surface, blocks' pixels among it.
-void filterAlone(Image<Vec3>& irradiance, const ReducedGBuffer& reduced, const GBuffer& gbuffer)
+/// Pixels that stand alone have one rotation each: averaged with what is around them on their surface, blocks' pixels among it. `filter(values, x, y)`.
+template <class Filter>
+void filterAlone(Image<Vec3>& values, const ReducedGBuffer& reduced, const GBuffer& gbuffer, const Filter& filter)
 {
     const std::size_t first = reduced.blockCount();
     std::vector<Vec3> filtered(reduced.source.size() - first);
     parallelFor(filtered.size(), std::size_t(kTile) * kTile, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const int pixel = static_cast<int>(reduced.source[first + i]);
-            filtered[i] = filterPixel(irradiance, gbuffer, gbuffer.height, pixel % gbuffer.width, pixel / gbuffer.width);
+            filtered[i] = filter(values, pixel % gbuffer.width, pixel / gbuffer.width);
         }
     });
-    for (std::size_t i = 0; i < filtered.size(); ++i) irradiance.texels[reduced.source[first + i]] = filtered[i];
+    for (std::size_t i = 0; i < filtered.size(); ++i) values.texels[reduced.source[first + i]] = filtered[i];
 }
 
 }  // namespace
@@ -161,7 +162,14 @@ Gathered upsample(const Gathered& light, const ReducedGBuffer& reduced, const GB
     copyAlone(light.specular, out.specular);
     copyAlone(light.opacity, out.opacity);
     out.filter4x4 = light.filter4x4;
-    if (light.filter4x4) filterAlone(out.irradiance, reduced, gbuffer);
+    if (!light.filter4x4) return out;
+    filterAlone(out.irradiance, reduced, gbuffer,
+                [&](const Image<Vec3>& irradiance, int x, int y) { return filterPixel(irradiance, gbuffer, gbuffer.height, x, y); });
+    if (light.lobeWeight.empty()) return out;
+    Image<float> lobeWeight(gbuffer.width, gbuffer.height, 1.0f);  // blocks have been averaged
+    copyAlone(light.lobeWeight, lobeWeight);
+    filterAlone(out.specular, reduced, gbuffer,
+                [&](const Image<Vec3>& specular, int x, int y) { return filterSpecularPixel(specular, lobeWeight, gbuffer, gbuffer.height, x, y); });
     return out;
 }
 

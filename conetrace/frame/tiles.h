@@ -11,11 +11,17 @@ namespace lrsm {
 inline constexpr int kTile = 16;                 ///< edge of the square of pixels that is one piece of work
 inline constexpr std::size_t kTilesPerTask = 4;  ///< which share their working memory
 
+/// How many tiles cover an edge of a picture.
+inline int tilesAlong(int pixels, int tile)
+{
+    return (pixels + tile - 1) / tile;
+}
+
 /// All tiles of a picture, in parallel: startTask() returns what a task does with each of its tiles, visit(tileX, tileY, counts). Returns the counts' sum.
 template <class Counts, class StartTask>
 Counts forTiles(int width, int height, const StartTask& startTask)
 {
-    const int tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
+    const int tilesX = tilesAlong(width, kTile), tilesY = tilesAlong(height, kTile);
     std::vector<Counts> counts(std::size_t(tilesX) * std::size_t(tilesY));
     parallelFor(counts.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
         auto visit = startTask();

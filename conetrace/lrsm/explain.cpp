@@ -1,5 +1,6 @@
 #include "conetrace/lrsm/explain.h"
 
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/lrsm/gather_pixel.h"
@@ -56,7 +57,8 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
     if (!plan.specularSchedules.empty() && gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) {
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
-        const Vec3 radiance = gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, roughness, scratch, counts, recorder);
+        const LobeDirection lobe = SpecularLobes(world.settings).direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const Vec3 radiance = gatherSpecular<estimator>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
         specular = specularText(radiance);
     }
 

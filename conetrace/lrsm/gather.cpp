@@ -1,5 +1,6 @@
 #include "conetrace/lrsm/gather.h"
 
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
@@ -27,8 +28,8 @@ struct GatherOutput {
 
 /// The pixels of one tile by Algorithm 1, one after the other.
 template <class Sampler>
-void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
-                const GatherOutput& to, ConeCounts& counts)
+void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan,
+                const SpecularLobes& lobes, int tileX, int tileY, const GatherOutput& to, ConeCounts& counts)
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
@@ -42,18 +43,21 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         out.opacity.texels[pixel] = diffuse.opacity;
         if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
+        const float roughness = gbuffer.roughness.texels[pixel];
+        const LobeDirection lobe = lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
         recorder = {{}, specularKeeper(to.record, pixel)};
-        out.specular.texels[pixel] =
-            gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[pixel], scratch, counts, recorder);
+        out.specular.texels[pixel] = gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
+        if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
     });
 }
 
 /// `paper`, Algorithm 1 as printed: one cone at a time.
-void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
+void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const SpecularLobes& lobes,
+                 const GatherOutput& out)
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
         out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
+            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, lobes, tileX, tileY, out, counts); };
         });
     });
 }
@@ -61,8 +65,8 @@ void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
 /// The pixels of one tile as a batch of cones: all of them for one cone of the set, then for the next.
 class TileBatch {
   public:
-    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, MarchBatch march)
-        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march)
+    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, const SpecularLobes& lobes, MarchBatch march)
+        : gbuffer_(gbuffer), world_(world), plan_(plan), lobes_(lobes), march_(march)
     {
     }
 
@@ -130,13 +134,17 @@ class TileBatch {
     void gatherSpecular(const Camera& camera, const GatherOutput& to, ConeCounts& counts)
     {
         std::vector<std::pair<const MarchSchedule*, std::size_t>> waiting;  // schedule, index into pixels_
-        std::vector<Vec3> mirrors(pixels_.size());
+        std::vector<Vec3> directions(pixels_.size());
         for (std::size_t k = 0; k < pixels_.size(); ++k) {
             if (gbuffer_.specularColor.texels[pixels_[k]] == Vec3(0.0f)) continue;
             const Receiver& receiver = receivers_[k];
-            mirrors[k] = mirrorDirection(receiver.normal, glm::normalize(directionToEye(camera, receiver.position)));
-            if (!(glm::dot(mirrors[k], receiver.geometricNormal) > 0.0f)) continue;
-            waiting.emplace_back(&plan_.specularSchedule(gbuffer_.roughness.texels[pixels_[k]]), k);
+            const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
+            const float roughness = gbuffer_.roughness.texels[pixels_[k]];
+            const LobeDirection lobe = lobes_.direction(receiver.normal, toEye, roughness, receiver.rotation);
+            directions[k] = lobe.direction;
+            if (!to.gathered.lobeWeight.empty()) to.gathered.lobeWeight.texels[pixels_[k]] = lobe.weight;
+            if (!(glm::dot(lobe.direction, receiver.geometricNormal) > 0.0f)) continue;
+            waiting.emplace_back(&plan_.specularSchedule(roughness), k);
         }
         std::sort(waiting.begin(), waiting.end());
         for (std::size_t begin = 0, end = 0; begin < waiting.size(); begin = end) {
@@ -144,7 +152,7 @@ class TileBatch {
                 const std::size_t k = waiting[end].second;
                 const int cone = static_cast<int>(end - begin);
                 cones_->setOrigin(cone, receivers_[k].originVoxels, receivers_[k].originWorld);
-                cones_->setDirection(cone, glm::normalize(mirrors[k]));
+                cones_->setDirection(cone, directions[k]);
             }
             cones_->count = static_cast<int>(end - begin);
             march_(world_, *waiting[begin].first, *cones_, *scratch_, *result_, counts);
@@ -165,6 +173,7 @@ class TileBatch {
     const GBuffer& gbuffer_;
     const BatchWorld& world_;
     const GatherPlan& plan_;
+    const SpecularLobes& lobes_;
     const MarchBatch march_;
     std::vector<std::size_t> pixels_;  ///< covered ones of the tile; any order will do, a stage packs away what it rules out
     std::vector<Receiver> receivers_;
@@ -174,12 +183,13 @@ class TileBatch {
 };
 
 /// `slab`: tile by tile at the widest that the machine has.
-void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
+void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const SpecularLobes& lobes,
+                const GatherOutput& out, int lanes)
 {
     const BatchWorld batchWorld(world);
     const MarchBatch march = marchSlabBatch(lanes);
     out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
+        return [&, batch = TileBatch(gbuffer, batchWorld, plan, lobes, march)](int tileX, int tileY, ConeCounts& counts) mutable {
             batch.gather(camera, tileX, tileY, out, counts);
         };
     });
@@ -197,16 +207,17 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record, int lanes)
 {
-    Gathered out = emptyGathered(gbuffer, needs);
+    const SpecularLobes lobes(settings);
+    Gathered out = emptyGathered(gbuffer, needs, lobes.sampling());
     if (record) *record = ConeRecord(gbuffer, needs, settings);
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     ConeCounts counts;
     if (settings.march.estimator == Estimator::slab)
-        gatherSlab(gbuffer, camera, world, plan, {out, record, counts}, lanes);
+        gatherSlab(gbuffer, camera, world, plan, lobes, {out, record, counts}, lanes);
     else
-        gatherPaper(gbuffer, camera, world, plan, {out, record, counts});
+        gatherPaper(gbuffer, camera, world, plan, lobes, {out, record, counts});
     out.counters = countersOf(counts);
     return out;
 }

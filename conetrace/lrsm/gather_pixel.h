@@ -33,13 +33,13 @@ PixelGather gatherDiffuse(const ConeWorld& world, const Sampler& sampler, const 
 }
 
 template <Estimator estimator, class Sampler, class Recorder>
-Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& toEye, float roughness,
+Vec3 gatherSpecular(const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, const Receiver& receiver, const Vec3& direction, float roughness,
                     MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
     const auto march = [&](const ConeRay& ray, const MarchSchedule& schedule) {
         return marchCone<estimator>(world, sampler, ray, schedule, scratch, counts, recorder);
     };
-    return gatherSpecular(plan, receiver, toEye, roughness, march, recorder);
+    return gatherSpecular(plan, receiver, direction, roughness, march, recorder);
 }
 
 }  // namespace lrsm

@@ -1,6 +1,7 @@
 #include "conetrace/lrsm/gather_rays.h"
 
 #include "conetrace/frame/cones.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/gather_pixel.h"
 #include "conetrace/lrsm/hit_radiance.h"
@@ -74,8 +75,8 @@ struct RayReceiver {
 template <class Hits>
 class RayTile {
   public:
-    RayTile(const GBuffer& gbuffer, const Camera& camera, const Hits& hits, const RayLight& light, const ConeSet& cones)
-        : gbuffer_(gbuffer), camera_(camera), hits_(hits), light_(light), cones_(cones)
+    RayTile(const GBuffer& gbuffer, const Camera& camera, const Hits& hits, const RayLight& light, const ConeSet& cones, const SpecularLobes& lobes)
+        : gbuffer_(gbuffer), camera_(camera), hits_(hits), light_(light), cones_(cones), lobes_(lobes)
     {
     }
 
@@ -130,10 +131,12 @@ class RayTile {
             const std::size_t pixel = receiver.pixel;
             if (gbuffer_.specularColor.texels[pixel] == Vec3(0.0f)) continue;
             const Vec3 toEye = glm::normalize(directionToEye(camera_, gbuffer_.position.texels[pixel]));
-            const Vec3 mirror = mirrorDirection(gbuffer_.normal.texels[pixel], toEye);
-            if (!(glm::dot(mirror, receiver.geometricNormal) > 0.0f)) continue;
-            const float tanHalf = light_.settings.set.apertureScale * specularTanHalf(light_.settings, gbuffer_.roughness.texels[pixel]);
-            const Vec4 light = trace(receiver, glm::normalize(mirror), tanHalf, counts);
+            const float roughness = gbuffer_.roughness.texels[pixel];
+            const LobeDirection lobe = lobes_.direction(gbuffer_.normal.texels[pixel], toEye, roughness, receiver.rotation);
+            if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
+            if (!(glm::dot(lobe.direction, receiver.geometricNormal) > 0.0f)) continue;
+            const float tanHalf = light_.settings.set.apertureScale * specularTanHalf(light_.settings, roughness);
+            const Vec4 light = trace(receiver, lobe.direction, tanHalf, counts);
             out.specular.texels[pixel] = Vec3(light);
             if (record) record->specular.texels[pixel] = light;
         }
@@ -156,6 +159,7 @@ class RayTile {
     const Hits& hits_;
     const RayLight& light_;
     const ConeSet& cones_;
+    const SpecularLobes& lobes_;
     std::vector<RayReceiver> receivers_;
 };
 
@@ -163,12 +167,13 @@ template <class Hits>
 Gathered gatherTiles(const GBuffer& gbuffer, const Camera& camera, const Hits& hits, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                      const ConeSettings& settings, ConeRecord* record)
 {
-    Gathered out = emptyGathered(gbuffer, needs);
+    const SpecularLobes lobes(settings);
+    Gathered out = emptyGathered(gbuffer, needs, lobes.sampling());
     if (record) *record = ConeRecord(gbuffer, needs, settings);
     const RayLight light(lrsms, settings);
     const ConeSet cones = makeConeSet(settings);
     const ConeCounts total = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&, tile = RayTile<Hits>(gbuffer, camera, hits, light, cones)](int tileX, int tileY, ConeCounts& counts) mutable {
+        return [&, tile = RayTile<Hits>(gbuffer, camera, hits, light, cones, lobes)](int tileX, int tileY, ConeCounts& counts) mutable {
             tile.gather(tileX, tileY, out, record, counts);
         };
     });

@@ -1,5 +1,6 @@
 #include "conetrace/vct/explain.h"
 
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_cones.h"
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/vct/gather.h"
@@ -50,7 +51,9 @@ std::string explainVct(const GatherInput& input, int x, int y)
     std::string specular;
     if (input.needs.specular && gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) {
         const Vec3 toEye = glm::normalize(directionToEye(input.camera, receiver.position));
-        const Vec3 radiance = gatherSpecular(plan, receiver, toEye, gbuffer.roughness.texels[pixel], march, recorder);
+        const float roughness = gbuffer.roughness.texels[pixel];
+        const LobeDirection lobe = SpecularLobes(cones).direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const Vec3 radiance = gatherSpecular(plan, receiver, lobe.direction, roughness, march, recorder);
         specular = specularText(radiance);
     }
     std::string text = receiverText(gbuffer, receiver, x, y);

@@ -234,4 +234,24 @@ Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& t
     return fresnel * (d * visibility * nl);
 }
 
+Vec3 reflectLobe(const Vec3& normal, float alpha, const Vec3& toViewer, const Vec2& disk)
+{
+    const Mat3 basis = basisFromNormal(normal);
+    const Vec3 viewer = glm::transpose(basis) * toViewer;
+
+    // Stretched to a hemisphere, the visible normals are a disk seen from the viewer, its far half squeezed.
+    const Vec3 stretched = glm::normalize(Vec3(alpha * viewer.x, alpha * viewer.y, std::max(viewer.z, 1e-6f)));
+    // The squeezed axis must lie in the plane of the viewer and the pole.
+    const float planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    const Vec3 across = planar2 > 0.0f ? Vec3(-stretched.y, stretched.x, 0.0f) / std::sqrt(planar2) : basisFromNormal(stretched)[0];
+    const Vec3 upward = glm::cross(stretched, across);
+    const float squeeze = 0.5f * (1.0f + stretched.z);
+    const float y = (1.0f - squeeze) * std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x)) + squeeze * disk.y;
+    const float z = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x - y * y));
+    const Vec3 visible = disk.x * across + y * upward + z * stretched;
+
+    const Vec3 half = basis * glm::normalize(Vec3(alpha * visible.x, alpha * visible.y, std::max(0.0f, visible.z)));
+    return glm::normalize(2.0f * glm::dot(toViewer, half) * half - toViewer);
+}
+
 }  // namespace lrsm

@@ -110,6 +110,7 @@ enum class Backface { cosine, step };
 enum class GaussianMethod { table, polynomial, exact };
 enum class Rotation { none, azimuth, strata };  ///< per-pixel over 4x4: none; azimuth of the whole cone set; azimuth and polar angle stratified
 enum class SpecularAperture { fixed, roughness };
+enum class SpecularDirection { mirror, lobe };  ///< of a pixel's one specular cone: the mirror's, or one of 16 points of the lobe, averaged over 4x4 pixels
 enum class TransmittanceModel { exponential, linear };
 
 /// Which directions, and how many.
@@ -161,6 +162,7 @@ struct LrsmGatherSettings {
 };
 
 struct SpecularSettings {
+    SpecularDirection direction = SpecularDirection::lobe;
     SpecularAperture aperture = SpecularAperture::roughness;
     float apertureDegrees = 10.0f;  ///< full aperture when fixed, (0, 170]
     bool operator==(const SpecularSettings&) const = default;

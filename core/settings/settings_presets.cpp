@@ -31,6 +31,7 @@ Settings literal()
     c.gather.backface = Backface::cosine;
     c.gather.vRadiusScale = 1.0f;
     c.gather.gaussian = GaussianMethod::table;
+    c.specular.direction = SpecularDirection::mirror;
     c.specular.aperture = SpecularAperture::fixed;
     c.specular.apertureDegrees = 10.0f;
     return s;
@@ -126,6 +127,7 @@ Settings vctPaper()
     c.march.startVoxels = 1.5f;
     c.march.transmittance = TransmittanceModel::exponential;
     c.march.voxelLevelBias = 0.0f;
+    c.specular.direction = SpecularDirection::mirror;
     c.specular.aperture = SpecularAperture::fixed;
     c.specular.apertureDegrees = 10.0f;
     return s;

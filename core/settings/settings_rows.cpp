@@ -258,6 +258,9 @@ void addLookupRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&March::filterFraction>(
         {"filter_fraction", "", "sampler fractions in float, or rounded to 1/256 (all that D3D11 guarantees)", "D3D11.3 spec 7.18.16"}, {"exact", "8bit"}));
 
+    rows.push_back(choice<&Specular::direction>(
+        {"specular_direction", "", "the mirror's; or points of the lobe that alternate and are averaged as the rotations are", "paper: mirror"},
+        {"mirror", "lobe"}));
     rows.push_back(choice<&Specular::aperture>({"specular_aperture", "", "fixed, or from the material's roughness", "paper: fixed"}, {"fixed", "roughness"}));
     rows.push_back(real<&Specular::apertureDegrees>({"specular_aperture_degrees", "degrees", "full aperture when fixed", "paper Fig. 7: 10"}, above(0, 170)));
 

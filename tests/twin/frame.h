@@ -27,6 +27,7 @@ class Frame {
     std::string setting(const char* key) const;  ///< a choice: its name; anything else: as JSON prints it
     bool is(const char* key, const char* choice) const { return setting(key) == choice; }
     float number(const char* key) const { return settings().at(key).get<float>(); }
+    float constant(const char* key) const { return manifest_["constants"].at(key).get<float>(); }
     int whole(const char* key) const { return settings().at(key).get<int>(); }
     bool specular() const { return manifest_["requires"]["specular"].get<bool>(); }
     int width() const { return manifest_["size"][0]; }

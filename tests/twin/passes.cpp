@@ -24,6 +24,7 @@ constexpr Plant kPlants[] = {
     {"texel_centre", "cones", "LRSM sampled half a texel off"},
     {"light_v", "cones", "v axis of the light's map flipped"},
     {"irradiance_pi", "cones", "sum of the cones not multiplied by pi"},
+    {"lobe_weight", "cones", "points of the lobe all count the same", "cornell-glossy"},
     {"vct_front", "vct mips", "the hidden texel of a column hides the other"},
     {"vct_facing", "vct cones", "voxels that face away are lit"},
     {"vct_direction", "vct cones", "the volume of +x for cones towards -x too"},
@@ -148,6 +149,7 @@ std::vector<std::string> runAll(Frame& frame, const Options& options)
         cones(frame, options);
     }
     if (frame.has("filter.irradiance")) filter(frame, options);
+    if (frame.has("filter.specular")) specularFilter(frame, options);
     composite(frame, options);
     return leftOut;
 }

@@ -12,6 +12,7 @@ struct Plant {
     const char* name;
     const char* pass;  ///< that a check must name
     const char* meaning;
+    const char* scene = "cornell-box";  ///< that shows it
 };
 std::span<const Plant> plants();
 
@@ -36,6 +37,7 @@ void cones(Frame& frame, const Options& options);
 void vctMips(Frame& frame, const Options& options);
 void vctCones(Frame& frame, const Options& options);
 void filter(Frame& frame, const Options& options);
+void specularFilter(Frame& frame, const Options& options);
 void composite(Frame& frame, const Options& options);
 
 /// All of them in the order of the data flow. What the capture cannot give (a textured scene's surfaces) or GL 4.5 has not (conservative

@@ -36,6 +36,14 @@ inline std::vector<std::string> specularDefine(const Frame& frame)
     return frame.specular() ? std::vector<std::string>{"SPECULAR"} : std::vector<std::string>{};
 }
 
+/// SPECULAR, and LOBES where a specular cone looks along a point of the lobe.
+inline std::vector<std::string> lobeDefines(const Frame& frame)
+{
+    std::vector<std::string> defines = specularDefine(frame);
+    if (frame.has("cones.lobe_weight")) defines.push_back("LOBES");
+    return defines;
+}
+
 /// Binding of an output, all zero.
 inline StorageBuffer outputBuffer(std::size_t bytes, GLuint binding)
 {
@@ -53,15 +61,20 @@ inline void setGrid(const Frame& frame, const Program& program)
     program.set("levels", grid["levels"].get<int>());
 }
 
+inline std::vector<float> floats(const NpyArray& array)
+{
+    const auto* from = reinterpret_cast<const float*>(array.bytes.data());
+    return {from, from + array.bytes.size() / sizeof(float)};
+}
+
 /// Rings, then the directions of all rotations: the buffer Tables.
 inline StorageBuffer coneTables(Frame& frame)
 {
     std::vector<float> values;
     for (const Json& ring : frame.manifest()["cones"]["rings"])
         for (const char* key : {"first", "count", "weight", "schedule"}) values.push_back(ring[key].get<float>());
-    const NpyArray& directions = frame.input("tables.cone_directions");
-    const auto* from = reinterpret_cast<const float*>(directions.bytes.data());
-    values.insert(values.end(), from, from + directions.bytes.size() / sizeof(float));
+    const std::vector<float> directions = floats(frame.input("tables.cone_directions"));
+    values.insert(values.end(), directions.begin(), directions.end());
     StorageBuffer buffer = makeBuffer(std::as_bytes(std::span(values)));
     bindBuffer(15, buffer);
     return buffer;
@@ -86,15 +99,29 @@ inline void traceCones(Frame& frame, const Program& program, const Pixels& pixel
     for (const std::byte value : frame.input("tables.rotation").bytes) rotation.push_back(int(value));
     program.setArray("rotation", rotation);
 
+    const bool lobes = frame.has("cones.lobe_weight");
+    if (lobes) {
+        program.setArray("lobePoints", floats(frame.input("tables.lobe_points")));
+        program.set("leastSampledRoughness", frame.constant("least_sampled_roughness"));
+        program.set("minSpecularAlpha", frame.constant("min_specular_alpha"));
+    }
+
     const StorageBuffer tables = coneTables(frame), schedules = inputBuffer(frame, "tables.schedules", 11);
     const std::size_t conesAPixel = frame.manifest()["cones"]["a_pixel"];
     const StorageBuffer diffuse = outputBuffer(16 * conesAPixel * pixels.count(), 7), irradiance = outputBuffer(12 * pixels.count(), 12),
-                        opacityOut = outputBuffer(4 * pixels.count(), 13), specular = outputBuffer(16 * pixels.count(), 14);
+                        opacityOut = outputBuffer(4 * pixels.count(), 13), specular = outputBuffer((lobes ? 32 : 16) * pixels.count(), 14);
     frame.time(pass, [&] { pixels.run(program); });
     frame.output("cones.diffuse", download(diffuse, 16 * conesAPixel * pixels.count()));
     frame.output("cones.irradiance", download(irradiance, 12 * pixels.count()));
     frame.output("cones.opacity", download(opacityOut, 4 * pixels.count()));
-    frame.output("cones.specular", download(specular, 16 * pixels.count()));
+    std::vector<std::byte> reflected = download(specular, (lobes ? 32 : 16) * pixels.count());
+    if (lobes) {
+        std::vector<std::byte> weights(4 * pixels.count());
+        for (std::size_t i = 0; i < pixels.count(); ++i) std::memcpy(weights.data() + 4 * i, reflected.data() + 16 * (pixels.count() + i), 4);
+        frame.output("cones.lobe_weight", std::move(weights));
+        reflected.resize(16 * pixels.count());
+    }
+    frame.output("cones.specular", std::move(reflected));
 }
 
 }  // namespace lrsm::twin

@@ -9,6 +9,7 @@
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"
 
+#include <map>
 #include <set>
 
 using namespace lrsm;
@@ -154,11 +155,13 @@ TEST_CASE("an error planted in a shader is named at its pass, and at no other", 
     if (!context()) return;
     const ScratchFolder scratch;
     const bool vct = GENERATE(false, true);
-    const std::string folder = capture(scratch, {"cornell-box", vct ? "vct" : "balanced"});
-    const Capture golden = readCapture(folder);
+    std::map<std::string, std::string> folders;  // captures by scene
     twin::Programs programs;
     for (const twin::Plant& plant : twin::plants()) {
         if (std::string(plant.pass).starts_with("vct") != vct) continue;
+        std::string& folder = folders[plant.scene];
+        if (folder.empty()) folder = capture(scratch, {plant.scene, vct ? "vct" : "balanced"});
+        const Capture golden = readCapture(folder);
         twin::Frame frame(folder, true);
         runAll(frame, {programs, plant.name});
         Candidate candidate;

@@ -59,7 +59,7 @@ void vctCones(Frame& frame, const Options& options)
 {
     const Json &grid = frame.manifest()["grid"], &table = frame.manifest()["cones"];
     const int n = grid["resolution"], levels = grid["levels"];
-    std::vector<std::string> defines = specularDefine(frame);
+    std::vector<std::string> defines = lobeDefines(frame);
     defines.push_back("MAX_STEPS " + std::to_string(frame.input("tables.schedules").shape.at(1)));
     defines.push_back("RINGS " + std::to_string(table["rings"].size()));
     if (frame.is("vct_weights", "squared")) defines.push_back("SQUARED");

@@ -105,7 +105,7 @@ int longestInTaps(const NpyArray& table)
 
 std::vector<std::string> coneDefines(const Frame& frame, const NpyArray& schedules, std::size_t rings)
 {
-    std::vector<std::string> defines = specularDefine(frame);
+    std::vector<std::string> defines = lobeDefines(frame);
     defines.push_back("MAX_STEPS " + std::to_string(schedules.shape.at(1)));
     defines.push_back("MAX_TAPS " + std::to_string(longestInTaps(schedules)));
     defines.push_back("RINGS " + std::to_string(rings));
@@ -209,15 +209,29 @@ void filter(Frame& frame, const Options& options)
     frame.output("filter.irradiance", download(out, 12 * pixels.count()));
 }
 
+void specularFilter(Frame& frame, const Options& options)
+{
+    const Program& program = options.compute("specular filter", {"pixel.glsl", "filter.comp.glsl"}, {"SPECULAR", "LOBES"});
+    const Pixels pixels(frame, program);
+    program.set("leastSampledRoughness", frame.constant("least_sampled_roughness"));
+    const StorageBuffer specular = inputBuffer(frame, "cones.specular", 9), weight = inputBuffer(frame, "cones.lobe_weight", 10),
+                        out = outputBuffer(12 * pixels.count(), 7);
+    frame.time("specular filter", [&] { pixels.run(program); });
+    frame.output("filter.specular", download(out, 12 * pixels.count()));
+}
+
 void composite(Frame& frame, const Options& options)
 {
-    const Program& program = options.compute("composite", {"pixel.glsl", "composite.comp.glsl"}, specularDefine(frame));
+    std::vector<std::string> defines = specularDefine(frame);
+    const bool filtered = frame.has("filter.specular");
+    defines.push_back(filtered ? "SPECULAR_STRIDE 3" : "SPECULAR_STRIDE 4");
+    const Program& program = options.compute("composite", {"pixel.glsl", "composite.comp.glsl"}, defines);
     const Pixels pixels(frame, program);
     const std::string irradianceName = frame.has("filter.irradiance") ? "filter.irradiance" : "cones.irradiance";
     const StorageBuffer irradiance = inputBuffer(frame, irradianceName, 9), direct = inputBuffer(frame, "direct.radiance", 10);
     std::vector<StorageBuffer> specularInputs;
     if (frame.specular()) {
-        specularInputs.push_back(inputBuffer(frame, "cones.specular", 11));
+        specularInputs.push_back(inputBuffer(frame, filtered ? "filter.specular" : "cones.specular", 11));
         specularInputs.push_back(inputBuffer(frame, "tables.specular_albedo", 12));
     }
     const std::size_t bytes = 12 * pixels.count();

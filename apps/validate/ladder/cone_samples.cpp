@@ -1,5 +1,6 @@
 #include "apps/validate/ladder/cone_samples.h"
 
+#include "conetrace/frame/lobe.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "voxel/sample_opacity.h"
@@ -95,7 +96,9 @@ void recordPixel(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
     if (plan.specularSchedules.empty() || gbuffer.specularColor.texels[index] == Vec3(0.0f)) return;
     recorder.specular();
     const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
-    gatherSpecular<estimator>(world, sampler, plan, receiver, toEye, gbuffer.roughness.texels[index], scratch, counts, recorder);
+    const float roughness = gbuffer.roughness.texels[index];
+    const LobeDirection lobe = SpecularLobes(world.settings).direction(receiver.normal, toEye, roughness, receiver.rotation);
+    gatherSpecular<estimator>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
 }
 
 }  // namespace

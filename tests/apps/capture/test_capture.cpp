@@ -126,7 +126,7 @@ TEST_CASE("capture: each pass run anew on the captured output of the ones before
     if (c.settings.cones.set.filter) CHECK(hashOf(filterIrradiance(gathered.irradiance, gbuffer)) == expected.at("filter"));
     if (const int passes = c.settings.cones.set.smoothingPasses(); passes > 0)
         CHECK(hashOf(smoothIrradiance(filteredFromCapture(c), gbuffer, passes)) == expected.at("smooth"));
-    const IndirectLight indirect = shadeIndirect(gbuffer, c.camera, irradianceFromCapture(c), gathered.specular);
+    const IndirectLight indirect = shadeIndirect(gbuffer, c.camera, irradianceFromCapture(c), specularFromCapture(c));
     CHECK(hashOf(composite(pictureFromCapture(c, "direct.radiance"), indirect)) == expected.at("composite"));
 }
 

@@ -82,7 +82,7 @@ TEST_CASE("check of method caches: a defect in any buffer of its passes is found
         for (const CheckedBuffer& other : report.buffers)
             if (other.verdict == Verdict::wrong && other.golden->name != buffer.name) {
                 CAPTURE(other.golden->name);
-                const std::vector<std::string> reads = inputsOf(other.golden->pass, cachesGolden().settings, 1);
+                const std::vector<std::string> reads = inputsOf(other.golden->pass, cachesGolden().settings, cachesGolden().needs, 1);
                 const bool follows = other.golden->pass == buffer.pass || std::find(reads.begin(), reads.end(), buffer.pass) != reads.end();
                 CHECK(follows);
             }

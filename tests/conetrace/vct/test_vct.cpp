@@ -273,8 +273,8 @@ TEST_CASE("vct: it builds what it reads, and holds what it said it would", "[con
     const Frame frame = renderVct(*scene, settings);
     std::vector<std::string> names;
     for (const PassReport& pass : frame.passes) names.push_back(pass.name);
-    CHECK(names == std::vector<std::string>{"voxelize", "rsm 0", "gbuffer", "direct", "vct surface", "vct inject", "vct mips", "vct cones", "filter", "smooth",
-                                            "composite"});
+    CHECK(names == std::vector<std::string>{"voxelize", "rsm 0", "gbuffer", "direct", "vct surface", "vct inject", "vct mips", "vct cones", "filter",
+                                            "specular filter", "smooth", "composite"});
     for (const PassReport& pass : frame.passes) CHECK(pass.nonFinite == 0);
     std::vector<MemoryRow> rows = predictMemory({.scene = *scene, .needs = frame.needs, .settings = settings, .width = 48, .height = 36});
     addMeasured(rows, frame.passes);

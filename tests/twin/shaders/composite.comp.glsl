@@ -3,7 +3,7 @@
 layout(std430, binding = 7) writeonly buffer OutDiffuse { float diffuseOut[]; };
 layout(std430, binding = 9) readonly buffer Irradiance { float irradiance[]; };
 layout(std430, binding = 10) readonly buffer Direct { float direct[]; };
-layout(std430, binding = 11) readonly buffer SpecularCones { vec4 specularCones[]; };
+layout(std430, binding = 11) readonly buffer Specular { float specularIn[]; };  // SPECULAR_STRIDE floats a pixel
 layout(std430, binding = 12) readonly buffer SpecularAlbedo { vec2 specularAlbedo[]; };  // 16 roughnesses, 32 square roots of <n.v>
 layout(std430, binding = 13) writeonly buffer OutSpecular { float specularOut[]; };
 layout(std430, binding = 14) writeonly buffer OutCombined { float combinedOut[]; };
@@ -17,6 +17,11 @@ vec3 lobeAlbedo(vec3 f0, float nDotV, float roughness)
     int i = cell.y * 32 + cell.x;
     vec2 scaleBias = mix(mix(specularAlbedo[i], specularAlbedo[i + 1], f.x), mix(specularAlbedo[i + 32], specularAlbedo[i + 33], f.x), f.y);
     return clamp(f0 * scaleBias.x + scaleBias.y, 0.0, 1.0);
+}
+
+vec3 lobeRadiance(int i)
+{
+    return vec3(specularIn[SPECULAR_STRIDE * i], specularIn[SPECULAR_STRIDE * i + 1], specularIn[SPECULAR_STRIDE * i + 2]);
 }
 
 void main()
@@ -33,7 +38,7 @@ void main()
 #endif
 #ifdef SPECULAR
         vec3 f0 = VEC3(gSpecularColor, i);
-        if (f0 != vec3(0)) specular = lobeAlbedo(f0, dot(VEC3(gNormal, i), directionToEye(VEC3(gPosition, i))), gRoughness[i]) * specularCones[i].rgb;
+        if (f0 != vec3(0)) specular = lobeAlbedo(f0, dot(VEC3(gNormal, i), directionToEye(VEC3(gPosition, i))), gRoughness[i]) * lobeRadiance(i);
 #endif
     }
     vec3 combined = VEC3(direct, i) + diffuse + specular;

@@ -1,7 +1,24 @@
-// 5x5 box of width 4 over the pixels of the same surface.
+// 5x5 box of width 4 over the pixels of the same surface. LOBES: of what wide specular lobes show, each by its weight besides.
 
 layout(std430, binding = 7) writeonly buffer Out { float filteredOut[]; };
+#ifdef LOBES
+layout(std430, binding = 9) readonly buffer Specular { vec4 specular[]; };
+layout(std430, binding = 10) readonly buffer LobeWeight { float lobeWeight[]; };
+uniform float leastSampledRoughness;
+// Of pixel j in the mean of pixel i: light, and weight.
+vec4 lightOf(int i, int j)
+{
+    bool alone = gRoughness[i] < leastSampledRoughness;
+    float weight = alone ? float(i == j) : gRoughness[j] < leastSampledRoughness ? 0.0 : lobeWeight[j];
+    return vec4(weight * specular[j].rgb, weight);
+}
+#else
 layout(std430, binding = 9) readonly buffer Irradiance { float irradiance[]; };
+vec4 lightOf(int i, int j)
+{
+    return vec4(VEC3(irradiance, j), 1.0);
+}
+#endif
 
 bool sameSurface(int a, int b)
 {
@@ -28,7 +45,7 @@ void main()
 #ifdef PLANT_filter_edges
                 weight = 1.0;
 #endif
-                sum += weight * vec4(VEC3(irradiance, j), 1.0);
+                sum += weight * lightOf(i, j);
             }
     vec3 mean = sum.w > 0.0 ? sum.rgb / sum.w : vec3(0);
     for (int c = 0; c < 3; ++c) filteredOut[3 * i + c] = mean[c];
