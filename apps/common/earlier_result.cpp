@@ -28,7 +28,8 @@ std::string commandOf(const fs::path& folder)
 {
     std::error_code ignored;
     if (fs::exists(folder / "samples.bin", ignored)) return "reference";
-    if (const std::string command = textIn(folder / "frame.json", "command"); !command.empty()) return command;
+    for (const char* file : {"frame.json", "sequence.json"})
+        if (const std::string command = textIn(folder / file, "command"); !command.empty()) return command;
     return textIn(folder / "manifest.json", "format").starts_with("lrsm") ? "capture" : "";
 }
 

@@ -288,6 +288,8 @@ TEST_CASE("program: a reference's folder is not rendered into", "[apps]")
         CHECK(contains(outcome.err, "truth: holds what `lrsm reference` wrote; give"));
     }
     CHECK(readText(sandbox.here() / "truth" / "frame.json") == before);
+    REQUIRE(sandbox.run("render cornell-box --frames 0:1 -o frames --quiet" + kTiny).code == 0);
+    CHECK(contains(sandbox.run("reference cornell-box --frames 0:1 -o frames --size 16x9 --spp 1").err, "frames: holds what `lrsm render` wrote"));
 }
 
 TEST_CASE("program: threads that the system refuses are done without, or are one line and exit code 3", "[apps][threads]")
