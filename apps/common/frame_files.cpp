@@ -115,7 +115,7 @@ void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& rec
         png("depth.png", [&] { return depthPicture(frame.gbuffer.depthLinear); }),
         png("opacity.png", [&] { return falseColor(frame.opacity, 0.0f, 1.0f); }),
     };
-    if (record.caches) files.push_back(png("caches.png", [&] { return cachesPicture(*record.caches, stops); }));
+    if (record.caches) files.push_back(png(kCachesPicture, [&] { return cachesPicture(*record.caches, stops); }));
     std::vector<std::vector<std::byte>> encoded(files.size());
     parallelFor(encoded.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) encoded[i] = files[i].encode();

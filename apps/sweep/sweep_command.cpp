@@ -252,6 +252,9 @@ int runSweep(const SweepArguments& options)
 
     if (options.reportOnly && !fs::is_regular_file(fs::path(options.output) / "rows.jsonl"))
         throw InputError(options.output, "holds no rows.jsonl; sweep first");
+    {
+        const OutputFolder writable(options.output);
+    }
     const ThreadLimit threads(options.threads);
     std::vector<SweptCase> cases = options.reportOnly ? std::vector<SweptCase>() : loadCases(options);
     RowStore store(options.output);
