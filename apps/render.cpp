@@ -93,10 +93,18 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
     RenderOptions options = plan.options;
     options.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     std::optional<Caches> caches;
+    std::optional<SeenProxies> proxies;
     if (plan.settings.method == Method::caches)
         options.watch.observe = [&](const std::string&, const PassOutput& output) {
             if (const auto* made = output.as<Caches>()) caches = *made;
         };
+    if (plan.settings.method == Method::proxies) {
+        proxies.emplace();
+        options.watch.observe = [&](const std::string& pass, const PassOutput& output) {
+            if (const auto* cells = output.as<ProxyCells>()) proxies->cells = *cells;
+            if (const auto* lists = output.as<VisibilityLists>()) (pass == "pp march" ? proxies->marched : proxies->filtered) = *lists;
+        };
+    }
     Rendered rendered{.json = {}, .frame = renderFrame(scene, camera, plan.settings, options), .memory = {}};
     const Frame& frame = rendered.frame;
     progress.show("writing", 0.0);
@@ -111,7 +119,8 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
                        .memory = predictMemory(memory),
                        .exposureStops = plan.exposure,
                        .radiance = plan.arguments.radiance,
-                       .caches = caches ? &*caches : nullptr};
+                       .caches = caches ? &*caches : nullptr,
+                       .proxies = proxies ? &*proxies : nullptr};
     addMeasured(record.memory, frame.passes);
     rendered.json = frameJson(frame, record);
     writeFrame(folder, frame, record, rendered.json);
@@ -124,7 +133,7 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
 
 OutputFolder::Earlier earlierRender()
 {
-    return leftBy("render", {kCachesPicture});
+    return leftBy("render", {kCachesPicture, kProxiesPicture});
 }
 
 int renderFrames(const RenderPlan& plan, const FrameRange& range)

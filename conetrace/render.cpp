@@ -6,7 +6,9 @@
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/frame/reduce.h"
 #include "conetrace/frame/smooth_irradiance.h"
+#include "conetrace/ism/gather.h"
 #include "conetrace/lrsm/gather.h"
+#include "conetrace/proxies/gather.h"
 #include "conetrace/vct/gather.h"
 #include "core/base/errors.h"
 #include "core/base/float_state.h"
@@ -116,6 +118,8 @@ GatherMethod methodOf(const Settings& settings)
     case Method::lrsm: return lrsmMethod(settings.cones.march.visibility);
     case Method::vct: return vctMethod();
     case Method::caches: return cachesMethod();
+    case Method::proxies: return proxiesMethod();
+    case Method::ism: return ismMethod();
     }
     throw InputError("method", "is none of the known");
 }

@@ -19,21 +19,6 @@ std::size_t mostCaches(const DescribedFrame& frame)
     return std::min(std::size_t(frame.settings.caches.maxCaches), std::size_t(frame.width) * std::size_t(frame.height));
 }
 
-void shape(std::vector<Buffer>& buffers, const std::string& name, std::initializer_list<std::size_t> extents)
-{
-    if (Buffer* buffer = findBuffer(buffers, name)) std::copy(extents.begin(), extents.end(), buffer->shape.begin());
-}
-
-/// Values that lie in memory as the buffer has them.
-template <class T>
-void fit(std::vector<Buffer>& buffers, const std::string& name, const std::vector<T>& values)
-{
-    Buffer* buffer = findBuffer(buffers, name);
-    if (!buffer) return;
-    buffer->bytes.assign(buffer->elements() * sizeOf(buffer->dtype), std::byte{0});
-    if (!values.empty()) std::memcpy(buffer->bytes.data(), values.data(), std::min(buffer->bytes.size(), values.size() * sizeof(T)));
-}
-
 /// Texels that are representable in the buffer's type.
 void fitTexels(std::vector<Buffer>& buffers, const std::string& name, const std::vector<Vec4>& texels)
 {
@@ -45,12 +30,6 @@ void fitTexels(std::vector<Buffer>& buffers, const std::string& name, const std:
     for (const Vec4& texel : texels)
         for (int c = 0; c < 4; ++c) halves.push_back(halfFromFloat(texel[c], HalfRounding::nearestEven));
     fit(buffers, name, halves);
-}
-
-template <class T>
-std::vector<T> allOf(const Capture& capture, const std::string& name, Dtype dtype)
-{
-    return copyFrom<T>(capture, name, dtype, capture.at(name).elements() * sizeOf(dtype) / sizeof(T));
 }
 
 std::vector<Vec4> allTexelsOf(const Capture& capture, const std::string& name)
@@ -66,19 +45,6 @@ void addAtlas(Catalogue& out, const DescribedFrame& frame, int level)
     out.add(mipName(kAtlas, level), half ? Dtype::f2 : Dtype::f4, {mostCaches(frame), n, n}, {"cache", "row", "column"}, kRgbOpacity,
             {"radiance times pre_exposure, and opacity, towards the texel's part of the cache's hemisphere", "cache", kRadianceUnit},
             level == 0 ? tolerances::kCones : tolerances::layerHalf(half));
-}
-
-/// Index lists are read by other passes: what points outside would be read outside.
-void refuseBeyond(const std::vector<std::uint32_t>& values, std::size_t most, const std::string& name)
-{
-    for (const std::uint32_t value : values)
-        if (value > most) throw InputError(name, "holds " + std::to_string(value) + " where " + std::to_string(most) + " is the most");
-}
-
-void refuseUnsorted(const std::vector<std::uint32_t>& values, std::size_t most, const std::string& name)
-{
-    refuseBeyond(values, most, name);
-    if (!std::is_sorted(values.begin(), values.end())) throw InputError(name, "is not in order");
 }
 
 }  // namespace

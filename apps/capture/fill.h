@@ -6,6 +6,7 @@
 #include "core/base/math.h"
 #include "core/base/parallel.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
@@ -60,6 +61,42 @@ std::vector<T> copyFrom(const Capture& capture, const std::string& name, Dtype d
     std::vector<T> values(count);
     if (count) std::memcpy(values.data(), bytes.data(), count * sizeof(T));
     return values;
+}
+
+/// Gives a buffer that is in the list its leading extents.
+inline void shape(std::vector<Buffer>& buffers, const std::string& name, std::initializer_list<std::size_t> extents)
+{
+    if (Buffer* buffer = findBuffer(buffers, name)) std::copy(extents.begin(), extents.end(), buffer->shape.begin());
+}
+
+/// Values that lie in memory as the buffer has them.
+template <class T>
+void fit(std::vector<Buffer>& buffers, const std::string& name, const std::vector<T>& values)
+{
+    Buffer* buffer = findBuffer(buffers, name);
+    if (!buffer) return;
+    buffer->bytes.assign(buffer->elements() * sizeOf(buffer->dtype), std::byte{0});
+    if (!values.empty()) std::memcpy(buffer->bytes.data(), values.data(), std::min(buffer->bytes.size(), values.size() * sizeof(T)));
+}
+
+/// All that a buffer holds.
+template <class T>
+std::vector<T> allOf(const Capture& capture, const std::string& name, Dtype dtype)
+{
+    return copyFrom<T>(capture, name, dtype, capture.at(name).elements() * sizeOf(dtype) / sizeof(T));
+}
+
+/// Index lists are read by other passes: what points outside would be read outside.
+inline void refuseBeyond(const std::vector<std::uint32_t>& values, std::size_t most, const std::string& name)
+{
+    for (const std::uint32_t value : values)
+        if (value > most) throw InputError(name, "holds " + std::to_string(value) + " where " + std::to_string(most) + " is the most");
+}
+
+inline void refuseUnsorted(const std::vector<std::uint32_t>& values, std::size_t most, const std::string& name)
+{
+    refuseBeyond(values, most, name);
+    if (!std::is_sorted(values.begin(), values.end())) throw InputError(name, "is not in order");
 }
 
 /// Texels of four channels, stored as halves or as float32.

@@ -3,6 +3,7 @@
 #include "apps/capture/caches_buffers.h"
 #include "apps/capture/map_buffers.h"
 #include "apps/capture/picture_buffers.h"
+#include "apps/capture/proxy_buffers.h"
 #include "apps/capture/scene_buffers.h"
 #include "apps/capture/tables.h"
 #include "apps/capture/vct_buffers.h"
@@ -119,6 +120,20 @@ void keepCachedLight(const PassOutput& output, std::size_t, Capture& capture)
     if (const auto* gathered = output.as<Gathered>()) cachedLightToBuffers(*gathered, capture.buffers);
 }
 
+template <const char* name>
+void keepLists(const PassOutput& output, std::size_t, Capture& capture)
+{
+    const auto* lists = output.as<VisibilityLists>();
+    if (!lists) return;
+    shapeBuffers(*lists, name, capture.buffers);
+    toBuffers(*lists, name, capture.buffers);
+}
+
+void keepListed(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* gathered = output.as<Gathered>()) cachedLightToBuffers(*gathered, capture.buffers);
+}
+
 // What of the passes a frame has.
 bool ofLrsm(const Settings& settings)
 {
@@ -132,6 +147,22 @@ bool ofCaches(const Settings& settings)
 {
     return settings.method == Method::caches;
 }
+bool ofProxies(const Settings& settings)
+{
+    return settings.method == Method::proxies;
+}
+bool ofIsm(const Settings& settings)
+{
+    return settings.method == Method::ism;
+}
+bool placesProxies(const Settings& settings)
+{
+    return ofProxies(settings) || ofIsm(settings);
+}
+bool filtersLists(const Settings& settings)
+{
+    return ofProxies(settings) && settings.proxies.filterRadius > 0;
+}
 bool hasLayers(const Settings& settings)
 {
     return ofLrsm(settings) || ofCaches(settings);
@@ -139,6 +170,10 @@ bool hasLayers(const Settings& settings)
 bool ofVctSurface(const Settings& settings)
 {
     return ofVct(settings) && readsSurface(settings.vct);
+}
+bool readsVoxels(const Settings& settings)
+{
+    return !placesProxies(settings) || settings.direct.shadows == Shadows::cone;
 }
 bool readsVoxelMips(const Settings& settings)
 {
@@ -150,11 +185,11 @@ bool comparesShadows(const Settings& settings)
 }
 bool filters(const Settings& settings)
 {
-    return settings.cones.set.filter;
+    return filtersIrradiance(settings);
 }
 bool smooths(const Settings& settings)
 {
-    return settings.cones.set.smoothingPasses() > 0;
+    return filters(settings) && settings.cones.set.smoothingPasses() > 0;
 }
 
 Families readForShadows(const Settings& settings)
@@ -172,7 +207,7 @@ const std::vector<std::string> kReceivers = {"gbuffer.position", "gbuffer.geomet
 const std::vector<PassRow> kRows = {
     {.family = "scene", .given = true, .describe = describeScene},
     {.family = "tables", .given = true, .describe = describeTables},
-    {.family = "voxelize", .stages = {"voxel"}, .reads = {"scene"},
+    {.family = "voxelize", .stages = {"voxel"}, .exists = readsVoxels, .reads = {"scene"},
      .describe = describeBits, .record = keepBits, .rerun = rerunVoxelize},
     {.family = "voxel mips", .stages = {"voxel"}, .exists = readsVoxelMips, .reads = {"voxelize"},
      .describe = describeVoxelMips, .record = keep<OpacityPyramid>, .rerun = rerunVoxelMips},
@@ -212,15 +247,33 @@ const std::vector<PassRow> kRows = {
     {.family = "rc gather", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer", "rc clusters", "rc places", "rc fill", "rc convolve"},
      .describe = describeCachedLight, .record = keepCachedLight, .rerun = rerunCachedLight,
      .sameTexel = kReceivers},
-    {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones", "rc gather"},
+    {.family = "pp place", .stages = {"proxies"}, .exists = placesProxies, .reads = {"scene"},
+     .describe = describeProxies, .record = keepShaped<PointProxies>, .rerun = rerunProxies},
+    {.family = "pp light", .stages = {"proxies"}, .exists = ofProxies, .reads = {"scene", "rsm", "pp place"},
+     .describe = describeProxyLight, .record = keepShaped<ProxyLight>, .rerun = rerunProxyLight},
+    {.family = "pp cells", .stages = {"proxies"}, .exists = ofProxies, .reads = {"scene", "pp place", "pp light"},
+     .describe = describeProxyCells, .record = keepShaped<ProxyCells>, .rerun = rerunProxyCells},
+    {.family = "pp march", .stages = {"proxies"}, .exists = ofProxies, .reads = {"tables", "scene", "gbuffer", "pp cells"},
+     .describe = describeMarched, .record = keepLists<kMarched>, .rerun = rerunProxyMarch},
+    {.family = "pp filter", .stages = {"proxies"}, .exists = filtersLists, .reads = {"gbuffer", "pp march"},
+     .describe = describeFiltered, .record = keepLists<kFilteredLists>, .rerun = rerunProxyFilter},
+    {.family = "pp gather", .stages = {"proxies", "vpl"}, .exists = ofProxies, .reads = {"scene", "gbuffer", "pp cells", "pp march", "pp filter"},
+     .describe = describeListed, .record = keepListed, .rerun = rerunProxyGather},
+    {.family = "ism lights", .stages = {"ism"}, .exists = ofIsm, .reads = {"rsm"},
+     .describe = describeVirtualLights, .record = keepShaped<VirtualLights>, .rerun = rerunIsmLights},
+    {.family = "ism maps", .stages = {"ism", "proxies"}, .exists = ofIsm, .reads = {"scene", "pp place", "ism lights"},
+     .describe = describeImperfectMaps, .record = keepShaped<ImperfectMaps>, .rerun = rerunIsmMaps},
+    {.family = "ism gather", .stages = {"ism", "vpl"}, .exists = ofIsm, .reads = {"scene", "gbuffer", "ism lights", "ism maps"},
+     .describe = describeListed, .record = keepListed, .rerun = rerunIsmGather},
+    {.family = "filter", .exists = filters, .reads = {"gbuffer", "cones", "vct cones", "rc gather", "ism gather"},
      .describe = describeFilter, .record = keepPicture<kFilter>, .rerun = rerunFilter,
      .sameTexel = {"cones.irradiance", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal"}},
     {.family = "specular filter", .specular = true, .exists = filtersLobes, .reads = {"gbuffer", "cones", "vct cones"},
      .describe = describeSpecularFilter, .record = keepPicture<kSpecularFilter>, .rerun = rerunSpecularFilter,
      .sameTexel = {"cones.specular", "cones.lobe_weight", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.roughness"}},
-    {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "rc gather", "filter"},
+    {.family = "smooth", .exists = smooths, .reads = {"gbuffer", "cones", "vct cones", "rc gather", "ism gather", "filter"},
      .describe = describeSmooth, .record = keepPicture<kSmooth>, .rerun = rerunSmooth},
-    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "rc gather", "filter", "specular filter", "smooth"},
+    {.family = "composite", .reads = {"tables", "gbuffer", "direct", "cones", "vct cones", "rc gather", "pp gather", "ism gather", "filter", "specular filter", "smooth"},
      .describe = describeComposite, .recordFrame = keepComposite, .rerun = rerunComposite,
      .sameTexel = {"gbuffer.albedo", "smooth.irradiance", "filter.irradiance", "cones.irradiance", "filter.specular", "cones.specular", "direct.radiance", "composite.diffuse",
                    "composite.specular"}},
@@ -276,6 +329,7 @@ HalfRounding halfRoundingOf(const Settings& settings, const std::string& pass)
     return family == "rsm"             ? settings.rsm.halfRounding
            : family.starts_with("vct") ? settings.vct.halfRounding
            : family.starts_with("rc")  ? settings.caches.halfRounding
+           : family.starts_with("pp")  ? settings.proxies.halfRounding
                                        : settings.layers.halfRounding;
 }
 

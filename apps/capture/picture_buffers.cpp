@@ -172,14 +172,21 @@ Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name)
     return imageFrom<Vec3>(capture, name);
 }
 
+bool filtersIrradiance(const Settings& settings)
+{
+    const bool alternates = settings.method != Method::proxies && (settings.method != Method::ism || settings.ism.interleave);
+    return settings.cones.set.filter && alternates;
+}
+
 Image<Vec3> filteredFromCapture(const Capture& capture)
 {
-    return pictureFromCapture(capture, capture.settings.cones.set.filter ? "filter.irradiance" : "cones.irradiance");
+    return pictureFromCapture(capture, filtersIrradiance(capture.settings) ? "filter.irradiance" : "cones.irradiance");
 }
 
 Image<Vec3> irradianceFromCapture(const Capture& capture)
 {
-    return capture.settings.cones.set.smoothingPasses() > 0 ? pictureFromCapture(capture, "smooth.irradiance") : filteredFromCapture(capture);
+    return filtersIrradiance(capture.settings) && capture.settings.cones.set.smoothingPasses() > 0 ? pictureFromCapture(capture, "smooth.irradiance")
+                                                                                                   : filteredFromCapture(capture);
 }
 
 Image<Vec3> specularFromCapture(const Capture& capture)

@@ -29,6 +29,8 @@ void toBuffers(const Image<Vec3>& picture, const std::string& name, std::vector<
 GBuffer gbufferFromCapture(const Capture& capture);
 Gathered gatheredFromCapture(const Capture& capture);
 Image<Vec3> pictureFromCapture(const Capture& capture, const std::string& name);
+/// Has a frame by these settings the pass "filter"? Where its directions alternate over 4x4 pixels, and it is not turned off.
+bool filtersIrradiance(const Settings& settings);
 /// The irradiance of the 4x4 filter, or of the cones where it did not run.
 Image<Vec3> filteredFromCapture(const Capture& capture);
 /// The irradiance that the composite reads: that of the last filter that ran.

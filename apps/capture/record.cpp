@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/exposure.h"
 #include "core/scene/scene_hash.h"
+#include "voxel/voxelize.h"
 
 #include <algorithm>
 
@@ -65,6 +66,7 @@ Capture recordCapture(const Scene& scene, const Camera& camera, const Requiremen
     capture.sceneBounds = scene.bounds;
     capture.sceneReach = scene.reach;
     capture.origin = scene.origin;
+    capture.grid = gridOf(scene, settings.voxel);
     capture.preExposure = preExposureOf(scene);
     capture.sceneComplete = withoutTextures(scene);
     capture.settings = settings;

@@ -1,4 +1,5 @@
 // The passes of method=vct run anew.
+#include "apps/capture/captured_world.h"
 #include "apps/capture/map_buffers.h"
 #include "apps/capture/picture_buffers.h"
 #include "apps/capture/rerun.h"
@@ -8,23 +9,6 @@
 #include "conetrace/vct/inject.h"
 
 namespace lrsm {
-
-namespace {
-
-/// What a GatherInput refers to, as far as it is asked for.
-struct CapturedWorld {
-    Scene scene;
-    GBuffer gbuffer;
-    std::vector<Rsm> rsms;
-    OpacityPyramid opacity;
-
-    GatherInput input(const Capture& capture, const Settings& settings) const
-    {
-        return {.scene = scene, .camera = capture.camera, .needs = capture.needs, .settings = settings, .gbuffer = gbuffer, .rsms = rsms, .opacity = opacity};
-    }
-};
-
-}  // namespace
 
 void rerunVctSurface(const Capture& inputs, std::size_t, Rerun& made)
 {

@@ -5,6 +5,7 @@
 #include "conetrace/caches/gather.h"
 #include "conetrace/frame/lobe.h"
 #include "conetrace/frame/specular_albedo.h"
+#include "conetrace/proxies/march.h"
 #include "conetrace/vct/gather.h"
 
 #include <algorithm>
@@ -61,6 +62,12 @@ GatherPlan planOf(const Requirements& needs, const Settings& settings)
     switch (settings.method) {
     case Method::vct: return planVct(settings.cones, needs, settings.voxel.resolution);
     case Method::caches: return planCaches(settings.caches, settings.cones, settings.voxel.resolution);
+    case Method::proxies: {
+        GatherPlan rays;
+        rays.cones = shadowRays(settings.proxies);
+        return rays;
+    }
+    case Method::ism: return {};
     case Method::lrsm: break;
     }
     return planGather(settings.cones, needs, settings.voxel.resolution);
@@ -75,7 +82,8 @@ CaptureTables makeTables(const Requirements& needs, const Settings& settings)
     tables.phi = NormalCdf(settings.cones.gather.gaussian, settings.cones.gather.gaussianTableSize);
     const auto cones = static_cast<std::size_t>(tables.plan.cones.count);
     tables.directions = tableOf("tables.cone_directions", Dtype::f4, {kRotations, cones, 3}, tables.plan.cones.directions);
-    tables.rotation = rotations(settings.cones.set.rotation);
+    const bool always = settings.method == Method::proxies || settings.method == Method::ism;
+    tables.rotation = rotations(always ? Rotation::strata : settings.cones.set.rotation);
     addSchedules(tables);
     if (settings.method == Method::caches) {
         const CacheTables caches = makeCacheTables(settings.caches, settings.cones.set.rotation);
@@ -98,7 +106,7 @@ void describeTables(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const CaptureTables tables = makeTables(frame.needs, frame.settings);
     const auto rows = [&](const Table& t, const Catalogue::Names& axes, const Catalogue::Names& components, const Catalogue::Text& text) {
-        if (!t.shape.empty()) out.add(t.name, t.dtype, {t.shape.begin(), t.shape.begin() + std::ssize(axes)}, axes, components, text, tolerances::kGiven);
+        if (!t.bytes.empty()) out.add(t.name, t.dtype, {t.shape.begin(), t.shape.begin() + std::ssize(axes)}, axes, components, text, tolerances::kGiven);
     };
     rows(tables.directions, {"rotation", "cone"}, {"x", "y", "z"}, {"axes of the diffuse cones, unit", "tangent frame, z along the normal", ""});
     rows(tables.rotation, {"row", "column"}, {}, {"rotation of the pixel at (row & 3, column & 3)", "", ""});

@@ -57,6 +57,12 @@ const Tolerance kPlaces = absolute(1e-5, 0.02, "of two pixels of nearly one scor
 const Tolerance kFolded = relative(2e-3, 0.0, "the order of N^2 additions, and a step of half");
 const Tolerance kCached = relative(5e-3, 0.002, "a sampler's 8-bit fractions; a cache at the limit of its radius or cosine");
 
+const Tolerance kPoints = absolute(1e-4, 0.02, "a few roundings of place and normal; where the map's shadow ends a point is lit or not");
+const Tolerance kCellSums = absolute(1e-4, 0.001, "the order of a cell's additions");
+const Tolerance kLists = exact(0.02, "a ray past a disc's rim meets another cell, and all that follows in the list moves");
+const Tolerance kMapDepths = absolute(1e-4, 0.02, "a point on a texel's border, or at the edge of a disc's reach");
+const Tolerance kListed = relative(5e-3, 0.01, "the order of many additions; a cell or light that is seen or not");
+
 Tolerance voxelMip(bool unorm)
 {
     if (!unorm) return absolute(1e-6, 0.0, "the order of eight additions");

@@ -29,6 +29,11 @@ extern const Tolerance kClusterAxes;
 extern const Tolerance kPlaces;        ///< of caches
 extern const Tolerance kFolded;        ///< irradiance of caches
 extern const Tolerance kCached;        ///< what pixels take from caches
+extern const Tolerance kPoints;        ///< of proxies and virtual lights
+extern const Tolerance kCellSums;      ///< of the proxies in a cell
+extern const Tolerance kLists;         ///< of cells, and what is counted of their rays
+extern const Tolerance kMapDepths;     ///< of imperfect maps
+extern const Tolerance kListed;        ///< what pixels take from cells or virtual lights
 extern const Tolerance kProduct;       ///< composite: a few multiplications
 extern const Tolerance kSpecularPart;  ///< composite: a table besides
 

@@ -77,7 +77,9 @@ void addScenesOptions(CLI::App& parser, CommonOptions& options, std::vector<std:
 
 void addSettingOptions(CLI::App& parser, CommonOptions& options)
 {
-    parser.add_option("--preset", options.preset, "literal, paper, fast, balanced, fine, accurate, rays, vct, vct-paper, caches or caches-paper")
+    parser
+        .add_option("--preset", options.preset,
+                    "literal, paper, fast, balanced, fine, accurate, rays, vct, vct-paper, caches, caches-paper, proxies, proxies-paper or ism")
         ->capture_default_str();
     parser.add_option("--settings", options.settingsFile, "JSON file of settings over the preset (a frame.json serves)");
     parser.add_option("--set", options.assignments, "key=value over both; repeatable, later wins (lrsm settings lists them)")->allow_extra_args(false);

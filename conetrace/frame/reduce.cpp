@@ -1,5 +1,6 @@
 #include "conetrace/frame/reduce.h"
 
+#include "conetrace/frame/blocks.h"
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/frame/same_surface.h"
 #include "conetrace/frame/tiles.h"
@@ -7,31 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 
 namespace lrsm {
 namespace {
-
-/// Blocks of a picture. Where the last one is cut by the picture's edge, its pixel is the last there is.
-struct Blocks {
-    int width = 0, height = 0, divisor = 1;
-
-    int columns() const { return (width + divisor - 1) / divisor; }
-    int rows() const { return (height + divisor - 1) / divisor; }
-    int middle(int block, int size) const { return std::min(block * divisor + divisor / 2, size - 1); }
-    std::size_t pixel(int column, int row) const { return std::size_t(middle(row, height)) * std::size_t(width) + std::size_t(middle(column, width)); }
-};
-
-/// The block before a coordinate, and how far it lies on the way to the next one, 0..1.
-struct Between {
-    int first = 0, second = 0;
-    float fraction = 0.0f;
-};
-Between between(const Blocks& blocks, int at, int count, int size)
-{
-    const int first = std::clamp((at - blocks.divisor / 2) / blocks.divisor, 0, count - 1), second = std::min(first + 1, count - 1);
-    const int begin = blocks.middle(first, size), end = blocks.middle(second, size);
-    return {first, second, end > begin ? std::clamp(float(at - begin) / float(end - begin), 0.0f, 1.0f) : 0.0f};
-}
 
 /// The blocks that a pixel takes its light from: index (row * columns + column) and weight; the weights of those on other surfaces are 0.
 struct BlockWeights {
@@ -96,6 +76,16 @@ void filterAlone(Image<Vec3>& values, const ReducedGBuffer& reduced, const GBuff
 }
 
 }  // namespace
+
+ReducedGBuffer everyPixel(const GBuffer& gbuffer)
+{
+    ReducedGBuffer all;
+    all.gbuffer = gbuffer;
+    all.blockRows = gbuffer.height;
+    all.source.resize(gbuffer.objectId.texels.size());
+    std::iota(all.source.begin(), all.source.end(), 0u);
+    return all;
+}
 
 ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor)
 {

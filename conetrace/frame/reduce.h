@@ -37,6 +37,9 @@ inline Counters countersOf(const ReducedGBuffer& reduced)
     return {{"pixels_alone", double(reduced.alone)}};
 }
 
+/// All pixels, each a block of its own.
+ReducedGBuffer everyPixel(const GBuffer& gbuffer);
+
 /// divisor >= 2.
 ReducedGBuffer reduceGBuffer(const GBuffer& gbuffer, int divisor);
 

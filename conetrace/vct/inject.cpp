@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/exposure.h"
 #include "core/scene/light.h"
+#include "lrsm/texel_area.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::size_t kGrain = 8192;
 constexpr std::uint32_t kNowhere = ~std::uint32_t(0);
-constexpr float kLeastTexelCosine = 1e-3f;  ///< texels at more of a slant count as wide as at this one
 
 /// Light of one occupied voxel, lights added.
 struct VoxelLight {
@@ -66,15 +66,6 @@ std::uint32_t voxelAt(const BitGrid& bits, const VoxelIndex& index, const Vec3& 
     return index.at(bits, found);
 }
 
-struct TexelPlace {
-    float u, v;
-};
-TexelPlace placeOf(const Rsm& rsm, std::size_t texel)
-{
-    const auto n = static_cast<std::size_t>(rsm.projection.resolution);
-    return {(float(texel % n) + 0.5f) / float(n), (float(texel / n) + 0.5f) / float(n)};
-}
-
 /// Of each texel of the map the number of its voxel.
 std::vector<std::uint32_t> placeTexels(const Rsm& rsm, const BitGrid& bits, const VoxelIndex& index, Placement& counts)
 {
@@ -84,9 +75,8 @@ std::vector<std::uint32_t> placeTexels(const Rsm& rsm, const BitGrid& bits, cons
         Placement& own = partial[begin / kGrain];
         for (std::size_t i = begin; i < end; ++i) {
             if (rsm.texels.texels[i].coverage == 0.0f) continue;
-            const TexelPlace at = placeOf(rsm, i);
             ++own.texels;
-            voxels[i] = voxelAt(bits, index, bits.grid.voxelsFromWorld(unprojectFromLight(rsm.projection, at.u, at.v, rsm.depthLinear.texels[i])), own);
+            voxels[i] = voxelAt(bits, index, bits.grid.voxelsFromWorld(texelPosition(rsm, i)), own);
         }
     });
     for (const Placement& p : partial) counts += p;
@@ -109,16 +99,6 @@ TexelLists listTexels(const std::vector<std::uint32_t>& voxels, std::uint32_t co
     for (std::size_t i = 0; i < voxels.size(); ++i)
         if (voxels[i] != kNowhere) lists.texels[next[voxels[i]]++] = std::uint32_t(i);
     return lists;
-}
-
-/// Surface that a texel stands for, m^2: r^2 dw / <n.l>.
-float texelArea(const Rsm& rsm, std::size_t texel)
-{
-    const TexelPlace at = placeOf(rsm, texel);
-    const Vec3 p = unprojectFromLight(rsm.projection, at.u, at.v, rsm.depthLinear.texels[texel]);
-    const float edge = projectToLight(rsm.projection, p).texelSize;
-    const float axial = glm::dot(-directionToLight(rsm.projection, p), rsm.projection.forward);
-    return edge * edge * axial / std::max(rsm.texels.texels[texel].nDotL, kLeastTexelCosine);
 }
 
 void injectMap(const Rsm& rsm, const BitGrid& bits, const VoxelIndex& index, const VoxelSurface* area, std::vector<VoxelLight>& lights, Placement& counts)

@@ -216,7 +216,58 @@ struct CacheSettings {
     bool operator==(const CacheSettings&) const = default;
 };
 
-enum class Method { lrsm, vct, caches };  ///< of indirect light
+enum class VplSingularity { disc, clamp, none };  ///< of a light of area a = pi r^2 near by: a / (d^2 + r^2), exact on its axis; a / d^2 clamped; or bare
+enum class VplLobe { gaussian, phong };           ///< weight of a light off the mirror direction: Eq. 7 of the proxies' paper, or cos^n
+
+/// Virtual point lights, as proxies and imperfect shadow maps share them.
+struct VplSettings {
+    VplSingularity singularity = VplSingularity::disc;
+    float clamp = 1.0f;  ///< `clamp`: most of a cos cos' / d^2, (0, 1000]
+    VplLobe lobe = VplLobe::gaussian;
+    float sigma = 0.25f;  ///< `gaussian`: sigma_theta of Eq. 7, (0, 10]
+    bool operator==(const VplSettings&) const = default;
+};
+
+enum class ProxyHash { position, index };    ///< what Russian roulette draws from: the triangle's place, or its number
+enum class ProxyCellWeight { chance, one };  ///< of a listed cell: over the chance that a ray meets it, or as it is
+enum class ProxyLobeNorm { visible, lobe };  ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
+
+/// Voxelized point proxies with a visibility filter.
+struct ProxySettings {
+    int count = 65536;  ///< proxies in the scene's reach, 1..2^22
+    ProxyHash hash = ProxyHash::position;
+    float radius = 2.0f;    ///< of a disc that occludes, over that of the surface a proxy stands for, (0, 8]
+    int grid = 24;          ///< cells along the longest side, 1..256
+    int rays = 64;          ///< shadow rays a marched pixel, 1..256
+    int lobeRays = 16;      ///< more within the specular lobe, 0..256
+    int marchDivisor = 4;   ///< one pixel in a block of so many each way is marched for, 1..16, power of two
+    int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
+    int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
+    ProxyCellWeight cellWeight = ProxyCellWeight::chance;
+    float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
+    ProxyLobeNorm lobeNorm = ProxyLobeNorm::visible;
+    Storage storage = Storage::gpu;
+    HalfRounding halfRounding = HalfRounding::d3d;
+    bool operator==(const ProxySettings&) const = default;
+};
+
+enum class IsmSampling { importance, uniform };  ///< where virtual lights stand: by the flux of the RSM's texels, or by their number
+enum class IsmFill { pullPush, splat, none };    ///< of holes in a map of points
+
+/// Imperfect shadow maps.
+struct IsmSettings {
+    int lights = 4096;    ///< virtual ones, 1..65536
+    int resolution = 64;  ///< texels along an edge of a map, power of two, 8..256
+    int points = 8192;    ///< drawn into a map, 1..2^20
+    IsmSampling sampling = IsmSampling::importance;
+    IsmFill fill = IsmFill::pullPush;
+    float bias = 0.01f;      ///< of depth, over the diagonal of the scene's reach, [0, 1]
+    bool interleave = true;  ///< a pixel takes a 16th of the lights, and the 4x4 filter averages
+    Storage storage = Storage::gpu;
+    bool operator==(const IsmSettings&) const = default;
+};
+
+enum class Method { lrsm, vct, caches, proxies, ism };  ///< of indirect light
 
 struct ForceSettings {
     bool everything = false;  ///< run every pass and branch that the scene analysis would leave out (tests that the analysis is safe)
@@ -233,6 +284,9 @@ struct Settings {
     ConeSettings cones;
     VctSettings vct;
     CacheSettings caches;
+    VplSettings vpl;
+    ProxySettings proxies;
+    IsmSettings ism;
     ForceSettings force;
     bool operator==(const Settings&) const = default;
 };

@@ -156,6 +156,36 @@ Settings cachesPaper()
     return s;
 }
 
+/// Point proxies whose lists of seen cells are filtered.
+Settings proxies()
+{
+    Settings s;
+    s.method = Method::proxies;
+    return s;
+}
+
+/// As the proxies' paper has its Cornell box, marched for every eighth pixel; what it says nothing of as in `proxies`, but a range that leaves far cells to
+/// their harmonics.
+Settings proxiesPaper()
+{
+    Settings s = proxies();
+    s.proxies.count = 24000;
+    s.proxies.grid = 6;
+    s.proxies.marchDivisor = 8;
+    s.proxies.cellWeight = ProxyCellWeight::one;
+    s.proxies.range = 2.0f;
+    return s;
+}
+
+/// Imperfect shadow maps as the proxies' paper compares itself with. Discs reach less far than those that stop rays: more would close what is open.
+Settings ism()
+{
+    Settings s;
+    s.method = Method::ism;
+    s.proxies.radius = 1.5f;
+    return s;
+}
+
 /// Sixteen rays a pixel through the triangles, each with a narrow lookup: no voxels, but a BVH.
 Settings rays()
 {
@@ -183,7 +213,10 @@ std::vector<Preset> presets()
             {{"vct", "voxel cone tracing with the default's cones, 256^3 voxels"}, vct},
             {{"vct-paper", "voxel cone tracing as the paper compares itself with, 256^3 voxels"}, vctPaper},
             {{"caches", "clustered radiance caches, filled by the LRSM"}, caches},
-            {{"caches-paper", "caches as placed and shared by their paper, filled by the LRSM"}, cachesPaper}};
+            {{"caches-paper", "caches as placed and shared by their paper, filled by the LRSM"}, cachesPaper},
+            {{"proxies", "point proxies in cells, seen by sparse shadow rays and a visibility filter"}, proxies},
+            {{"proxies-paper", "proxies, cells and pictures' sizes as their paper has them for its Cornell box"}, proxiesPaper},
+            {{"ism", "imperfect shadow maps: 4096 virtual lights, maps of 64^2 from 8192 points each"}, ism}};
 }
 
 }  // namespace

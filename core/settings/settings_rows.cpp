@@ -20,6 +20,9 @@ struct Places {
     static auto of(auto& s, SpecularSettings*) { return std::pair(&s.cones.specular, "cones"); }
     static auto of(auto& s, VctSettings*) { return std::pair(&s.vct, "vct"); }
     static auto of(auto& s, CacheSettings*) { return std::pair(&s.caches, "caches"); }
+    static auto of(auto& s, VplSettings*) { return std::pair(&s.vpl, "vpl"); }
+    static auto of(auto& s, ProxySettings*) { return std::pair(&s.proxies, "proxies"); }
+    static auto of(auto& s, IsmSettings*) { return std::pair(&s.ism, "ism"); }
     static auto of(auto& s, ForceSettings*) { return std::pair(&s.force, "force"); }
 };
 
@@ -118,23 +121,27 @@ using Gather = LrsmGatherSettings;
 using Specular = SpecularSettings;
 using Vct = VctSettings;
 using C = CacheSettings;
+using Vpl = VplSettings;
+using P = ProxySettings;
+using Ism = IsmSettings;
 using F = ForceSettings;
 using Names = std::vector<std::string_view>;
 
 /// In the order of the enumeration Method.
 SettingRow methodRow()
 {
-    const Names names = {"lrsm", "vct", "caches"};
-    return {.key = "method",
-            .stage = "method",
-            .unit = "",
-            .meaning = "of indirect light: layered reflective shadow maps, voxel cone tracing, or clustered radiance caches",
-            .source = "paper: lrsm",
-            .kind = SettingKind::choice,
-            .range = {0, static_cast<float>(names.size() - 1)},
-            .choices = names,
-            .get = [](const Settings& settings) { return static_cast<double>(settings.method); },
-            .set = [](Settings& settings, double value) { settings.method = static_cast<Method>(value); }};
+    const Names names = {"lrsm", "vct", "caches", "proxies", "ism"};
+    return {
+        .key = "method",
+        .stage = "method",
+        .unit = "",
+        .meaning = "of indirect light: layered reflective shadow maps, voxel cone tracing, clustered radiance caches, point proxies, or imperfect shadow maps",
+        .source = "paper: lrsm",
+        .kind = SettingKind::choice,
+        .range = {0, static_cast<float>(names.size() - 1)},
+        .choices = names,
+        .get = [](const Settings& settings) { return static_cast<double>(settings.method); },
+        .set = [](Settings& settings, double value) { settings.method = static_cast<Method>(value); }};
 }
 
 void addBuildingRows(std::vector<SettingRow>& rows)
@@ -302,6 +309,65 @@ void addCacheRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&C::halfRounding>({"rc_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
 }
 
+/// [P]: "Voxelized Point Proxies" with a visibility filter, 2014; [ISM]: Ritschel et al., "Imperfect Shadow Maps", SIGGRAPH Asia 2008.
+void addProxyRows(std::vector<SettingRow>& rows)
+{
+    rows.push_back(choice<&Vpl::singularity>(
+        {"vpl_singularity", "", "a virtual light near by: area / (d^2 + r^2), exact on its disc's axis; area / d^2 up to vpl_clamp; or area / d^2", "ours"},
+        {"disc", "clamp", "none"}));
+    rows.push_back(real<&Vpl::clamp>({"vpl_clamp", "", "vpl_singularity=clamp: most of area cos cos' / d^2", "ours"}, above(0, 1000)));
+    rows.push_back(choice<&Vpl::lobe>({"vpl_lobe", "", "specular weight of a light: Eq. 7, a Gaussian of 1 - cos^n; or cos^n itself", "[P] Eq. 7: gaussian"},
+                                      {"gaussian", "phong"}));
+    rows.push_back(real<&Vpl::sigma>({"vpl_sigma", "", "vpl_lobe=gaussian: sigma of Eq. 7", "ours; [P] gives none"}, above(0, 10)));
+
+    rows.push_back(
+        whole<&P::count>({"pp_count", "proxies", "points that stand for the scene's surfaces, in proportion to area", "[P] Sec. 4: 24k, 170k"}, {1, 1 << 22}));
+    rows.push_back(choice<&P::hash>(
+        {"pp_hash", "", "what decides the fraction of a triangle's proxies: its place, or its number (steady where it moves)", "[P] Sec. 3.1: position"},
+        {"position", "index"}));
+    rows.push_back(real<&P::radius>(
+        {"pp_radius", "", "radius of the disc that stops rays, over that of a disc as large as the surface a proxy stands for", "ours; [P] gives none"},
+        above(0, 8)));
+    rows.push_back(whole<&P::grid>({"pp_grid", "cells", "along the longest side of the scene's reach", "[P] Sec. 4: 6, 20"}, {1, 256}));
+    rows.push_back(whole<&P::rays>({"pp_rays", "", "shadow rays a marched pixel", "ours; [P] gives none"}, {1, 256}));
+    rows.push_back(whole<&P::lobeRays>({"pp_lobe_rays", "", "more of them within the specular lobe, where there is one", "ours; [P] gives none"}, {0, 256}));
+    rows.push_back(whole<&P::marchDivisor>({"pp_march_divisor", "pixels", "edge of the blocks of which one pixel sends shadow rays", "[P] Sec. 4: 8, 4"},
+                                           powersOfTwo(1, 16)));
+    rows.push_back(whole<&P::gatherDivisor>(
+        {"pp_gather_divisor", "pixels", "edge of the blocks of which one pixel is gathered for; the others are joint bilaterally upsampled", "[P] Sec. 4: 2"},
+        powersOfTwo(1, 8)));
+    rows.push_back(whole<&P::filterRadius>(
+        {"pp_filter_radius", "marched pixels", "m = n of Eq. 4, the visibility filter: 3 for a window of 7x7; 0: none", "[P] Sec. 4: 3"}, {0, 8}));
+    rows.push_back(choice<&P::cellWeight>(
+        {"pp_cell_weight", "", "a listed cell counts over the chance that one of the list's rays meets it, so that missed ones lose no light; or as it is",
+         "ours; [P] Eq. 5: one"},
+        {"chance", "one"}));
+    rows.push_back(real<&P::range>(
+        {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
+        {0, 1e6f}));
+    rows.push_back(choice<&P::lobeNorm>({"pp_lobe_norm", "",
+                                         "a specular sum over the weights of the proxies that a pixel sees ([P]'s effective number), times the part of the "
+                                         "lobe that meets any; or over the whole lobe",
+                                         "[P] Sec. 3.3: visible"},
+                                        {"visible", "lobe"}));
+    rows.push_back(choice<&P::storage>({"pp_storage", "", "radiance of proxies in half or in float32", "[P]: none given"}, {"gpu", "float32"}));
+    rows.push_back(choice<&P::halfRounding>({"pp_half_rounding", "", "as rsm_half_rounding", "D3D11.3 spec 3.2.2: d3d"}, {"d3d", "nearest_even"}));
+
+    rows.push_back(whole<&Ism::lights>({"ism_lights", "lights", "virtual lights drawn from the reflective shadow maps", "[P] Sec. 4: 4096"}, {1, 65536}));
+    rows.push_back(whole<&Ism::resolution>({"ism_resolution", "texels", "edge of a virtual light's depth map", "[P] Sec. 4: 64"}, powersOfTwo(8, 256)));
+    rows.push_back(
+        whole<&Ism::points>({"ism_points", "points", "drawn into each map, a window of the pp_count proxies of its own", "[P] Sec. 4: 8192"}, {1, 1 << 20}));
+    rows.push_back(choice<&Ism::sampling>({"ism_sampling", "", "lights by the flux of the maps' texels, or evenly over the texels", "[ISM]: importance"},
+                                          {"importance", "uniform"}));
+    rows.push_back(choice<&Ism::fill>(
+        {"ism_fill", "", "holes between points: by pull and push as far as each point's disc reaches; by drawing discs; or left open", "[ISM]: pull_push"},
+        {"pull_push", "splat", "none"}));
+    rows.push_back(real<&Ism::bias>({"ism_bias", "diagonals of the reach", "a receiver so much behind a map's depth is still lit", "ours"}, {0, 1}));
+    rows.push_back(flag<&Ism::interleave>(
+        {"ism_interleave", "", "each pixel of a block of 4x4 takes a 16th of the lights, and the geometry-aware filter averages them", "[ISM]: true"}));
+    rows.push_back(choice<&Ism::storage>({"ism_storage", "", "depth of the maps in UNORM16 or in float32", "[ISM]: gpu"}, {"gpu", "float32"}));
+}
+
 void addForceRows(std::vector<SettingRow>& rows)
 {
     rows.push_back(
@@ -310,21 +376,23 @@ void addForceRows(std::vector<SettingRow>& rows)
 
 void addShorthands(std::vector<SettingRow>& rows)
 {
-    rows.push_back(
-        shorthand(choice<&V::storage>({"storage", "", "voxel_storage, rsm_storage, layer_storage, vct_storage and rc_storage at once", "paper Table 1: gpu"},
-                                      {"gpu", "float32"}),
-                  [](Settings& settings, double value) {
-                      settings.voxel.storage = settings.rsm.storage = settings.layers.storage = settings.vct.storage = settings.caches.storage =
-                          static_cast<Storage>(value);
-                  }));
     rows.push_back(shorthand(
-        choice<&L::halfRounding>(
-            {"half_rounding", "", "rsm_half_rounding, layer_half_rounding, vct_half_rounding and rc_half_rounding at once", "D3D11.3 spec 3.2.2: d3d"},
-            {"d3d", "nearest_even"}),
+        choice<&V::storage>(
+            {"storage", "", "the storage of voxels, maps, layers, radiance volumes, caches, proxies and imperfect maps at once", "paper Table 1: gpu"},
+            {"gpu", "float32"}),
         [](Settings& settings, double value) {
-            settings.rsm.halfRounding = settings.layers.halfRounding = settings.vct.halfRounding = settings.caches.halfRounding =
-                static_cast<HalfRounding>(value);
+            settings.voxel.storage = settings.rsm.storage = settings.layers.storage = settings.vct.storage = settings.caches.storage =
+                settings.proxies.storage = settings.ism.storage = static_cast<Storage>(value);
         }));
+    rows.push_back(
+        shorthand(choice<&L::halfRounding>(
+                      {"half_rounding", "", "rsm_half_rounding, layer_half_rounding, vct_half_rounding, rc_half_rounding and pp_half_rounding at once",
+                       "D3D11.3 spec 3.2.2: d3d"},
+                      {"d3d", "nearest_even"}),
+                  [](Settings& settings, double value) {
+                      settings.rsm.halfRounding = settings.layers.halfRounding = settings.vct.halfRounding = settings.caches.halfRounding =
+                          settings.proxies.halfRounding = static_cast<HalfRounding>(value);
+                  }));
 }
 
 }  // namespace
@@ -337,6 +405,7 @@ std::span<const SettingRow> settingRows()
         addConeRows(rows);
         addLookupRows(rows);
         addCacheRows(rows);
+        addProxyRows(rows);
         addForceRows(rows);
         addShorthands(rows);
         return rows;

@@ -25,9 +25,12 @@ std::vector<std::pair<std::string, Settings>> variants()
 {
     std::vector<std::pair<std::string, Settings>> all;
     for (const std::string& name : presetNames()) all.emplace_back(name, preset(name));
-    // Tiles are in pixels, and the presets' are for pictures a dozen times as wide as these.
+    // Tiles and blocks are in pixels, and the presets' are for pictures a dozen times as wide as these.
     constexpr int kSmallTile = 4;
-    for (auto& [name, settings] : all) settings.caches.tile = kSmallTile;
+    for (auto& [name, settings] : all) {
+        settings.caches.tile = kSmallTile;
+        settings.proxies.marchDivisor = settings.proxies.gatherDivisor = 1;
+    }
     return all;
 }
 

@@ -11,8 +11,10 @@ using namespace lrsm::test;
 TEST_CASE("passes: every pass of a frame has a row, which records what it describes, and runs anew what it records", "[capture][passes]")
 {
     Settings settings = smallSettings();
-    settings.method = GENERATE(Method::lrsm, Method::vct, Method::caches);
+    settings.method = GENERATE(Method::lrsm, Method::vct, Method::caches, Method::proxies, Method::ism);
     settings.vct.injection = Injection::voxel;
+    settings.proxies = {.count = 2000, .grid = 6, .rays = 16, .gatherDivisor = 1};
+    settings.ism = {.lights = 64, .resolution = 16, .points = 500};
     settings.force.everything = true;
     settings.direct.shadows = GENERATE(Shadows::exact, Shadows::hard, Shadows::cone);
     settings.direct.shadowResolution = 2;
@@ -62,5 +64,6 @@ TEST_CASE("passes: are asked for by family, by light, and as a command line spel
     CHECK_FALSE(isAskedFor({"voxel"}, "voxel mips"));
     CHECK(passNames("!") ==
           "voxelize, voxel-mips, rsm, shadow, lrsm!, vct-surface, vct-inject, vct-mips, gbuffer, direct, cones, vct-cones, rc-clusters, rc-places, rc-fill, "
-          "rc-convolve, rc-gather, filter, specular-filter, smooth, composite");
+          "rc-convolve, rc-gather, pp-place, pp-light, pp-cells, pp-march, pp-filter, pp-gather, ism-lights, ism-maps, ism-gather, filter, specular-filter, "
+          "smooth, composite");
 }

@@ -63,7 +63,10 @@ std::string otherValue(const SettingInfo& info, const std::string& current)
         const std::string first = info.allowed.substr(0, bar), last = info.allowed.substr(info.allowed.rfind(" | ") + 3);
         return current == first ? last : first;
     }
-    if (contains(info.allowed, "power of two")) return current == "2" ? "4" : "2";
+    if (contains(info.allowed, "power of two")) {
+        const int least = std::max(2, std::stoi(info.allowed));
+        return std::to_string(current == std::to_string(least) ? 2 * least : least);
+    }
     if (contains(info.allowed, "0 .. 3")) return current == "1" ? "2" : "1";
     if (contains(info.allowed, " .. ")) return current == "7" ? "5" : "7";
     return current == "0.3" ? "0.4" : "0.3";

@@ -1,0 +1,104 @@
+#pragma once
+
+#include "conetrace/frame/reduce.h"
+#include "conetrace/proxies/lists.h"
+#include "conetrace/proxies/vpl.h"
+#include "conetrace/proxies/walk.h"
+
+/// Light from the cells that a pixel's neighbours see: [P] Sec. 3.3, Eq. 5 to 7.
+namespace lrsm {
+
+/// Everything that a pixel reads.
+struct GatherWorld {
+    const GBuffer& gbuffer;  ///< of all pixels
+    const Camera& camera;
+    const ProxyCells& cells;
+    const VisibilityLists& lists;
+    const ProxySettings& settings;
+    const VplSettings& vpl;
+    const VplLobeIntegral* lobe = nullptr;  ///< read with pp_lobe_norm=lobe
+};
+
+// [P] gives no widths.
+inline constexpr float kGeometricDepth = 0.05f;   ///< standard deviation of w_G in depth, of the pixel's own
+inline constexpr float kGeometricNormal = 0.1f;   ///< ... in 1 - n.n
+inline constexpr float kLeastListWeight = 1e-6f;  ///< of the four together, before they are made to sum to 1
+
+/// The lists of the four blocks about a pixel, and w_G w_l of Eq. 5, made to sum to 1. Where no block has the pixel's geometry the one of the greatest w_l has
+/// 1; where none of the four is covered, the nearest within kSearchedBlocks has, or all are 0.
+struct ListWeights {
+    std::array<std::size_t, 4> block{};
+    std::array<float, 4> weight{};
+};
+inline constexpr int kSearchedBlocks = 4;
+ListWeights listWeights(const GBuffer& gbuffer, int divisor, int x, int y);
+
+/// visit(cell, weight) for the cells of the four lists, rising; the weight is the sum over the lists that hold the cell. So sum_p w(p) L(V'_p) of Eq. 5
+/// evaluates a cell once in place of up to four times.
+template <class Visit>
+void forListedCells(const VisibilityLists& lists, const ListWeights& weights, const Visit& visit)
+{
+    constexpr std::uint32_t kEnd = ~std::uint32_t(0);
+    std::array<std::span<const std::uint32_t>, 4> rest;
+    for (std::size_t k = 0; k < 4; ++k)
+        if (weights.weight[k] > 0.0f) rest[k] = lists.of(weights.block[k]);
+    for (;;) {
+        std::uint32_t cell = kEnd;
+        for (const auto& list : rest)
+            if (!list.empty()) cell = std::min(cell, list.front());
+        if (cell == kEnd) return;
+        float weight = 0.0f;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (!rest[k].empty() && rest[k].front() == cell) {
+                weight += weights.weight[k];
+                rest[k] = rest[k].subspan(1);
+            }
+        visit(cell, weight);
+    }
+}
+
+/// A surface that is lit.
+struct LitSurface {
+    Vec3 position{0.0f}, normal{0.0f};
+    Vec3 mirror{0.0f};  ///< unit; where the specular lobe looks
+};
+
+/// Is the cell nearer than R of Eq. 6, so that it shines proxy by proxy?
+inline bool isNear(const ProxyCells& cells, std::uint32_t cell, const Vec3& position, float range)
+{
+    const Vec3 d = cells.lights[cell].centroid - position;
+    const float reach = range * cells.grid.diagonal();
+    return glm::dot(d, d) < reach * reach;
+}
+
+/// f(v) of Eq. 6: irradiance by a cell's proxies, or by its spherical harmonics; W/m^2 times the pre-exposure.
+Vec3 irradianceByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
+Vec3 irradianceByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
+
+/// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its
+/// proxies by harmonics, but no less than its light says: irradiance over pi times the mean radiance of those that shine. A cell that is listed over its chance
+/// to be is right in the mean (Horvitz and Thompson 1952), so that small cells, of which rays miss most, lose no light (pp_cell_weight).
+float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
+inline constexpr float kLeastChance = 1e-6f;
+
+/// Sums over solid angles: radiance by w W, and w W, for the weight w of Eq. 7 and the solid angle W = a cos' / (d^2 + r^2) of a proxy, lit or not, above the
+/// surface's horizon. Their quotient is the mean radiance over the part of the lobe that sees proxies.
+struct LobeSum {
+    Vec3 radiance{0.0f};
+    float weight = 0.0f;
+};
+LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe);
+LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe);
+
+/// What one pixel takes.
+struct ProxyPixel {
+    Vec3 irradiance{0.0f}, specular{0.0f};
+    float opacity = 0.0f;
+    std::uint64_t cells = 0, proxies = 0;  ///< evaluated
+};
+ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int y);
+
+/// The pixels of `reduced`, in its order; parallel over tiles.
+Gathered gatherFromCells(const GatherWorld& world, const ReducedGBuffer& reduced, const Requirements& needs);
+
+}  // namespace lrsm

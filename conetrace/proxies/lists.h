@@ -1,0 +1,76 @@
+#pragma once
+
+#include "conetrace/frame/blocks.h"
+#include "core/base/arrays.h"
+#include "core/base/counters.h"
+#include "core/base/image.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Which cells the marched pixels see: V_p of [P] Sec. 3.1.
+namespace lrsm {
+
+/// One pixel in the middle of each block has a list, row by row; hashes of cells, rising, none twice.
+struct VisibilityLists {
+    int divisor = 1;                   ///< edge of a block, pixels
+    std::vector<std::uint32_t> first;  ///< list of block b: cells[first[b]] .. cells[first[b + 1] - 1]
+    std::vector<std::uint32_t> cells;
+    std::vector<float> opacity;       ///< of each block's pixel: part of its diffuse shadow rays that met a disc
+    std::vector<float> lobeOpacity;   ///< the same of its rays in the specular lobe; 1 where it has none
+    std::vector<std::uint32_t> rays;  ///< diffuse shadow rays that a block's list is of; of a filtered one those of all lists joined
+
+    std::span<const std::uint32_t> of(std::size_t block) const { return std::span(cells).subspan(first[block], first[block + 1] - first[block]); }
+    std::size_t size() const { return opacity.size(); }
+};
+
+template <class Visit>
+void forEachArray(const VisibilityLists& lists, Visit&& visit)
+{
+    const auto visitAll = [&](const auto& array) { visit(array, ArrayTraits{array.size() * sizeof(array[0])}); };
+    visitAll(lists.first);
+    visitAll(lists.cells);
+    visitAll(lists.opacity);
+    visitAll(lists.lobeOpacity);
+    visitAll(lists.rays);
+}
+
+inline Counters countersOf(const VisibilityLists& lists)
+{
+    return {{"marched_pixels", double(lists.size())}, {"listed_cells", double(lists.cells.size())}};
+}
+
+/// A set of cells that is filled and emptied again and again; comes out in order.
+class CellSet {
+  public:
+    explicit CellSet(std::size_t cells) : words_((cells + 63) / 64) {}
+    void add(std::uint32_t cell)
+    {
+        std::uint64_t& word = words_[cell / 64];
+        if (word == 0) touched_.push_back(cell / 64);
+        word |= std::uint64_t(1) << (cell % 64);
+    }
+    /// Appends the cells to `out`, rising, and is empty then.
+    void moveTo(std::vector<std::uint32_t>& out)
+    {
+        std::sort(touched_.begin(), touched_.end());
+        for (const std::uint32_t index : touched_) {
+            for (std::uint64_t word = words_[index]; word != 0; word &= word - 1)
+                out.push_back(index * 64 + static_cast<std::uint32_t>(std::countr_zero(word)));
+            words_[index] = 0;
+        }
+        touched_.clear();
+    }
+
+  private:
+    std::vector<std::uint64_t> words_;
+    std::vector<std::uint32_t> touched_;  ///< words that are not 0
+};
+
+/// Lists of each row of blocks, made apart, one after the other.
+VisibilityLists joinRows(const std::vector<VisibilityLists>& rows, int divisor);
+
+}  // namespace lrsm

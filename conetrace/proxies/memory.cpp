@@ -1,0 +1,69 @@
+#include "conetrace/proxies/memory.h"
+
+#include "conetrace/proxies/gather.h"
+
+namespace lrsm {
+namespace {
+
+const PassReport* reportOf(const MemoryQuestion& question, const std::string& pass)
+{
+    if (!question.rendered) return nullptr;
+    for (const PassReport& report : *question.rendered)
+        if (report.name == pass) return &report;
+    return nullptr;
+}
+
+MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid)
+{
+    const ProxySettings& settings = question.settings.proxies;
+    const PassReport* found = reportOf(question, "pp cells");
+    // Two quads a cell may not be full.
+    const std::size_t most = std::size_t(settings.count) / 4 + 2 * std::min(grid.count(), std::size_t(settings.count));
+    const std::size_t quads = found ? std::size_t(counterSum(found->counters, "quads")) : most;
+    ProxyCells like;
+    like.half = settings.storage == Storage::gpu;
+    const std::size_t proxyGpu = 16 + (like.half ? 8u : 16u),
+                      tables = (2 * grid.count() + 1) * sizeof(std::uint32_t) + grid.count() * (sizeof(CellLight) + sizeof(Aabb));
+    return {.structure = "proxies",
+            .pass = "pp cells",
+            .detail = std::string(found ? "" : "about ") + std::to_string(settings.count) + " in " + std::to_string(grid.size.x) + "x" +
+                      std::to_string(grid.size.y) + "x" + std::to_string(grid.size.z) + " cells",
+            .predicted = tables + quads * (sizeof(ProxyQuad) + 4 * sizeof(std::uint32_t)),
+            .predictedGpu = tables + quads * 4 * proxyGpu,
+            .table2 = "",
+            .measured = {}};
+}
+
+MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, const std::string& structure, std::size_t mostACell)
+{
+    const Blocks blocks{question.width, question.height, question.settings.proxies.marchDivisor};
+    const std::size_t count = std::size_t(blocks.columns()) * std::size_t(blocks.rows());
+    const PassReport* found = reportOf(question, pass);
+    const std::size_t cells = found ? std::size_t(counterSum(found->counters, "listed_cells")) : question.unknowns == Unknowns::least ? 0 : count * mostACell;
+    const std::size_t bytes = (count + 1 + cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t));
+    return {.structure = structure,
+            .pass = pass,
+            .detail = std::string(found ? "" : "up to ") + std::to_string(cells) + " cells",
+            .predicted = bytes,
+            .predictedGpu = bytes,
+            .table2 = "",
+            .measured = {}};
+}
+
+}  // namespace
+
+std::vector<MemoryRow> predictProxies(const MemoryQuestion& question)
+{
+    const ProxySettings& settings = question.settings.proxies;
+    const CellGrid grid = makeCellGrid(extentOf(question.scene), settings.grid);
+    const std::size_t rays = std::size_t(settings.rays + (question.needs.specular ? settings.lobeRays : 0));
+    std::vector<MemoryRow> rows = {cellsRow(question, grid)};
+    rows.push_back(listsRow(question, "pp march", "lists of seen cells", std::min(rays, grid.count())));
+    if (settings.filterRadius > 0) {
+        const auto window = std::size_t(2 * settings.filterRadius + 1);
+        rows.push_back(listsRow(question, "pp filter", "filtered lists", std::min(rays * window * window, grid.count())));
+    }
+    return rows;
+}
+
+}  // namespace lrsm

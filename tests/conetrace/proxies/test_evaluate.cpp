@@ -1,0 +1,162 @@
+#include "conetrace/proxies/evaluate.h"
+
+#include "conetrace/proxies/vpl.h"
+#include "core/scene/builtin_scenes.h"
+#include "tests/conetrace/proxies/proxy_scenes.h"
+
+#include "catch.h"
+
+#include <cmath>
+#include <numbers>
+
+using namespace lrsm;
+using namespace lrsm::test;
+
+namespace {
+
+constexpr double kPiDouble = std::numbers::pi;
+
+/// Irradiance by all cells: what nothing hides.
+Vec3 irradianceByAll(const ProxyCells& cells, const LitSurface& surface, const VplSettings& vpl, bool byProxies)
+{
+    Vec3 sum(0.0f);
+    for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell)
+        sum += byProxies ? irradianceByProxies(cells, cell, surface, vpl) : irradianceByHarmonics(cells, cell, surface, vpl);
+    return sum;
+}
+
+/// Configuration factor of two parallel unit squares, face to face at distance 1: Howell, catalog C-11, a = b = c = 1.
+double facingSquares()
+{
+    const double x = 1.0, y = 1.0, x2 = 1.0 + x * x, y2 = 1.0 + y * y;
+    return 2.0 / (kPiDouble * x * y) *
+           (std::log(std::sqrt(x2 * y2 / (1.0 + x * x + y * y))) + x * std::sqrt(y2) * std::atan(x / std::sqrt(y2)) +
+            y * std::sqrt(x2) * std::atan(y / std::sqrt(x2)) - x * std::atan(x) - y * std::atan(y));
+}
+
+}  // namespace
+
+TEST_CASE("proxies: one disc on its axis gives pi L r^2 / (d^2 + r^2), at any distance", "[proxies]")
+{
+    const float distance = GENERATE(0.01f, 0.1f, 1.0f, 10.0f);
+    PointProxies one;
+    one.area = 0.3f;
+    one.positions = {Vec3(0.5f)};
+    one.normals = {Vec3(0, 0, 1)};
+    const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 1), Vec3(0, 1, 1)}});
+    const ProxyCells cells = sortProxies(scene, one, shining(one, Vec3(1, 2, 3)), {.grid = 1});
+    const LitSurface surface{.position = Vec3(0.5f, 0.5f, 0.5f + distance), .normal = Vec3(0, 0, -1)};
+    const double r2 = 0.3 / kPiDouble, d2 = double(distance) * double(distance);
+    CHECK(double(irradianceByProxies(cells, 0, surface, {}).z) == Approx(kPiDouble * 3.0 * r2 / (d2 + r2)).epsilon(1e-4));
+    // Clamped, and bare.
+    const double bare = 3.0 * 0.3 / d2;
+    CHECK(double(irradianceByProxies(cells, 0, surface, {.singularity = VplSingularity::none}).z) == Approx(bare).epsilon(1e-4));
+    CHECK(double(irradianceByProxies(cells, 0, surface, {.singularity = VplSingularity::clamp, .clamp = 2.0f}).z) ==
+          Approx(std::min(bare, 3.0 * 2.0)).epsilon(1e-4));
+}
+
+TEST_CASE("proxies: between facing squares they give the closed form within 2 / sqrt N, by proxies, and by harmonics of small cells", "[proxies]")
+{
+    const int count = GENERATE(500, 4000);
+    const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}});  // front towards +z
+    Scene reach = scene;
+    reach.bounds.include(Vec3(1, 1, 1));
+    const ProxySettings settings{.count = count, .grid = 16};
+    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    const ProxyCells cells = sortProxies(reach, proxies, shining(proxies, Vec3(2.0f)), settings);
+    double direct = 0.0, far = 0.0, order1 = 0.0;
+    constexpr int kReceivers = 16;
+    for (int j = 0; j < kReceivers; ++j)
+        for (int i = 0; i < kReceivers; ++i) {
+            const LitSurface surface{.position = Vec3((float(i) + 0.5f) / kReceivers, (float(j) + 0.5f) / kReceivers, 1.0f), .normal = Vec3(0, 0, -1)};
+            direct += double(irradianceByAll(cells, surface, {}, true).x) / (kReceivers * kReceivers);
+            far += double(irradianceByAll(cells, surface, {}, false).x) / (kReceivers * kReceivers);
+            // Eq. 2 after l = 1 of each point: 1/4 + c/2 in place of its cosine c.
+            for (const Vec3& p : proxies.positions) {
+                const glm::dvec3 away = glm::dvec3(surface.position) - glm::dvec3(p);
+                const double d2 = glm::dot(away, away), cosine = away.z / std::sqrt(d2);
+                order1 += 2.0 / count * (0.25 + 0.5 * cosine) * cosine / d2 / (kReceivers * kReceivers);
+            }
+        }
+    const double expected = kPiDouble * 2.0 * facingSquares();
+    CHECK(facingSquares() == Approx(0.19982).epsilon(1e-3));
+    CHECK(direct == Approx(expected).epsilon(2.0 / std::sqrt(double(count))));
+    // Far cells lose a fifth of what faces them: 3/4 of its intensity at 0 degrees.
+    CHECK(far == Approx(order1).epsilon(0.01));
+    CHECK(far == Approx(0.78 * expected).epsilon(0.02));
+}
+
+TEST_CASE("proxies: within a furnace of radiance L every lobe sees L, and irradiance is pi L within 2 %", "[proxies]")
+{
+    const Scene scene = *makeBuiltinScene("furnace");
+    const ProxySettings settings{.count = 20000, .grid = 8};
+    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    const ProxyCells cells = sortProxies(scene, proxies, shining(proxies, Vec3(0.5f)), settings);
+    std::mt19937 random(1);
+    for (int k = 0; k < 8; ++k) {
+        const Vec3 out = randomUnit(random);
+        const LitSurface surface{.position = out * 0.9f, .normal = -out, .mirror = glm::normalize(-out + 0.5f * randomUnit(random))};
+        CHECK(double(irradianceByAll(cells, surface, {}, true).y) == Approx(0.5 * kPiDouble).epsilon(0.02));
+        const VplLobeWeight lobe({}, phongExponent(0.3f));
+        for (const bool byProxies : {true, false}) {
+            LobeSum sum;
+            for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell) {
+                const LobeSum own = byProxies ? lobeByProxies(cells, cell, surface, {}, lobe) : lobeByHarmonics(cells, cell, surface, {}, lobe);
+                sum.radiance += own.radiance;
+                sum.weight += own.weight;
+            }
+            CHECK(double(sum.radiance.y / sum.weight) == Approx(0.5).epsilon(1e-4));
+            // By proxies the sum over weights is the lobe's integral, which pp_lobe_norm=lobe divides by.
+            if (byProxies) CHECK(double(sum.weight) == Approx(lobeIntegral({}, double(phongExponent(0.3f)))).epsilon(0.1));
+        }
+    }
+}
+
+TEST_CASE("proxies: the chance that a ray meets a cell is that of its form factor, and bounds what a cell gives over it", "[proxies]")
+{
+    // A square far away, half of its proxies dark: F = cos cos' A / (pi d^2).
+    const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}});
+    const ProxySettings settings{.count = 1000, .grid = 1};
+    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    ProxyLight light = shining(proxies, Vec3(2.0f));
+    for (std::size_t i = 0; i < proxies.size(); i += 2) light.radiance[i] = Vec3(0.0f);
+    const ProxyCells cells = sortProxies(scene, proxies, light, settings);
+    const LitSurface surface{.position = Vec3(0.5f, 0.5f, 20.0f), .normal = Vec3(0, 0, -1)};
+    const Vec3 irradiance = irradianceByProxies(cells, 0, surface, {});
+    // By harmonics: 3/4 of it at 0 degrees; half of it shines, so that light alone says half.
+    const double factor = 1.0 / (kPiDouble * 400.0);
+    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 100.0f)) == Approx(1.0 - std::exp(-100.0 * 0.75 * factor)).epsilon(0.01));
+    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 1e6f)) == Approx(1.0));
+    // Many cells, few rays: what is given over its chance is at most pi L / n.
+    const double most = double((irradiance / chanceOfMeeting(cells, 0, surface, irradiance, 4.0f)).x);
+    CHECK(most <= kPiDouble * 2.0 / 4.0 * 1.01);
+    CHECK(most > double(irradiance.x));
+}
+
+TEST_CASE("virtual lights: Eq. 7 and its integral against double precision", "[proxies]")
+{
+    const float exponent = GENERATE(0.0f, 1.0f, 10.0f, 50.0f, 400.0f), sigma = GENERATE(0.1f, 0.25f, 1.0f);
+    const VplLobe kind = GENERATE(VplLobe::gaussian, VplLobe::phong);
+    const VplSettings settings{.lobe = kind, .sigma = sigma};
+    const VplLobeWeight weight(settings, exponent);
+    const auto exact = [&](double cosine) {
+        const double p = cosine > 0.0 ? std::pow(cosine, double(exponent)) : exponent == 0.0f ? 0.0 : 0.0;
+        const double off = (1.0 - p) / double(sigma);
+        return kind == VplLobe::phong ? p : std::exp(-0.5 * off * off) / (double(sigma) * std::sqrt(2.0 * kPiDouble));
+    };
+    double integral = 0.0;
+    constexpr int kSteps = 200000;
+    for (int k = 0; k < kSteps; ++k) integral += exact((k + 0.5) / kSteps) * 2.0 * kPiDouble / kSteps;
+    CHECK(lobeIntegral(settings, double(exponent)) == Approx(integral).epsilon(kLobeIntegralMaxError));
+    for (int k = -20; k <= 100; ++k) {
+        const double cosine = k / 100.0;
+        REQUIRE(std::abs(double(weight.ofCosine(float(cosine))) - exact(cosine)) <= double(kLobeWeightMaxError) * exact(1.0));
+    }
+}
+
+TEST_CASE("virtual lights: a lobe's exponent is that of GGX's alpha = (2n + 1)^-1/2", "[proxies]")
+{
+    CHECK(phongExponent(0.31544f) == Approx(50.0f).epsilon(1e-3));
+    CHECK(phongExponent(0.4671f) == Approx(10.0f).epsilon(1e-3));
+    CHECK(phongExponent(1.0f) == 0.0f);
+}
