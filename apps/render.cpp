@@ -1,6 +1,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
+#include "apps/common/earlier_result.h"
 #include "apps/common/frame_files.h"
 #include "apps/common/memory.h"
 #include "apps/common/messages.h"
@@ -81,7 +82,7 @@ void admit(const RenderPlan& plan, const Scene& scene, const Camera& camera, Say
 {
     const Requirements needs = prepare(scene, plan.settings);
     enforceMemoryLimit({scene, needs, plan.settings, plan.size.x, plan.size.y}, plan.arguments.maxMemoryMegabytes);
-    sayOnce(loadMessages(scene));
+    sayOnce(loadMessages(scene, plan.arguments.verbose));
     sayOnce(extentMessages(scene, camera, plan.settings));
 }
 
@@ -130,6 +131,11 @@ Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& sce
     return rendered;
 }
 
+OutputFolder::Earlier earlierRender()
+{
+    return leftBy("render", {kCachesPicture, kProxiesPicture});
+}
+
 int renderFrames(const RenderPlan& plan, const FrameRange& range)
 {
     const RenderArguments& arguments = plan.arguments;
@@ -150,7 +156,8 @@ int renderFrames(const RenderPlan& plan, const FrameRange& range)
                                 admit(plan, frame.scene, frame.camera, sayOnce);
                                 renderTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, sayOnce);
                                 return true;
-                            }},
+                            },
+                        .earlier = earlierRender()},
                        arguments);
 }
 
@@ -161,6 +168,7 @@ int runRender(const RenderArguments& arguments)
     std::optional<IVec2> pixel;
     if (!arguments.pixel.empty()) pixel = parsePixel(arguments.pixel, plan.size);
     const ThreadLimit threads(arguments.threads);
+    if (!arguments.output.empty()) refuseOtherResult(arguments.output, "render");
     if (const std::optional<FrameRange> range = chosenFrames(arguments.sequence)) {
         if (pixel) throw InputError("--pixel", "is of one picture; give --time in place of --frames");
         return renderFrames(plan, *range);
@@ -176,7 +184,7 @@ int runRender(const RenderArguments& arguments)
     if (!folder) return 0;
 
     const Rendered rendered = renderTo(*folder, plan, scene, camera, hashScene(scene), sayOnce);
-    folder->commit();
+    folder->commit(earlierRender());
     if (arguments.json)
         std::cout << jsonText(rendered.json);
     else if (!arguments.quiet)

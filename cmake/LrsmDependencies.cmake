@@ -14,6 +14,14 @@ if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 find_package(OpenImageIO REQUIRED)
+find_package(meshoptimizer REQUIRED)
+# Debian 12's libwebp brings no package file.
+if(NOT TARGET WebP::webp)
+  find_path(WEBP_INCLUDE_DIR webp/decode.h REQUIRED)
+  find_library(WEBP_LIBRARY webp REQUIRED)
+  add_library(WebP::webp UNKNOWN IMPORTED)
+  set_target_properties(WebP::webp PROPERTIES IMPORTED_LOCATION "${WEBP_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${WEBP_INCLUDE_DIR}")
+endif()
 
 # Debian's OpenImageIO target names include folders of packages that are not installed; CMake refuses those.
 block()

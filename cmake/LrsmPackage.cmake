@@ -11,6 +11,8 @@ install(EXPORT lrsmTargets NAMESPACE lrsm:: DESTINATION ${config_folder} COMPONE
 
 if(TARGET lrsm_program)
   install(TARGETS lrsm_program COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/apps/lrsm.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/apps/lrsm.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lrsm COMPONENT program)
   install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(FILES docs/licence.md DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)  # where Debian looks
@@ -36,5 +38,5 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries, headers and what 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblrsm-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libembree-dev, libglm-dev, libtinygltf-dev, libopenimageio-dev, openimageio-tools, libtbb-dev, libssl-dev, nlohmann-json3-dev")
+    "libembree-dev, libglm-dev, libtinygltf-dev, libopenimageio-dev, openimageio-tools, libtbb-dev, libssl-dev, libmeshoptimizer-dev, libwebp-dev, nlohmann-json3-dev")
 include(CPack)

@@ -5,6 +5,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
+#include "apps/common/earlier_result.h"
 #include "apps/common/memory.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
@@ -106,7 +107,7 @@ Captured captureTo(OutputFolder& folder, const Options& options, const Settings&
         sayOnce(passMessages(frame.passes));
         sayOnce(darknessMessages(scene, {frame.gbuffer.position, frame.gbuffer.geometricNormal, frame.gbuffer.depthLinear}, frame.direct, frame.combined));
     };
-    sayOnce(loadMessages(scene));
+    sayOnce(loadMessages(scene, options.verbose));
     sayOnce(extentMessages(scene, camera, settings));
     Captured captured;
     captured.predictedBytes = predictCaptureBytes(chosenBuffers(scene, needs, settings, record, layersKept({scene, needs, settings, size.x, size.y})));
@@ -119,6 +120,16 @@ Captured captureTo(OutputFolder& folder, const Options& options, const Settings&
     if (!options.noPictures) writePictures(folder, captured.capture);
     progress.clear();
     return captured;
+}
+
+/// All that an earlier capture wrote goes: a verdict must never rest on buffers of two.
+std::vector<std::string> earlierCapture(const std::filesystem::path& folder)
+{
+    std::vector<std::string> files = filesOfCapture(folder.string());
+    if (files.empty()) return {};
+    const std::vector<std::string> pictures = pictureFiles(files);
+    files.insert(files.end(), pictures.begin(), pictures.end());
+    return files;
 }
 
 int captureFrames(const Options& options, const Settings& settings, const FrameRange& range)
@@ -141,7 +152,8 @@ int captureFrames(const Options& options, const Settings& settings, const FrameR
                             [&](const SequenceFrame& frame, OutputFolder& folder) {
                                 captureTo(folder, options, settings, frame.scene, frame.camera, sayOnce);
                                 return true;
-                            }},
+                            },
+                        .earlier = earlierCapture},
                        options);
 }
 
@@ -151,13 +163,14 @@ int run(const Options& options)
     const Settings settings = capturedSettings(options);
     chosenSize(options);
     const ThreadLimit threads(options.threads);
+    refuseOtherResult(options.output, "capture");
     if (const std::optional<FrameRange> range = chosenFrames(options.sequence)) return captureFrames(options, settings, *range);
 
     OutputFolder folder(options.output);
     const Scene scene = loadChosenScene(options);
     SayOnce sayOnce;
     const Captured captured = captureTo(folder, options, settings, scene, chosenCamera(scene, options), sayOnce);
-    folder.commit();
+    folder.commit(earlierCapture);
 
     const std::size_t bytes = predictCaptureBytes(captured.capture.buffers);
     if (options.json)
@@ -181,7 +194,10 @@ Command addCapture(CLI::App& program)
     addRunOptions(*parser, *options);
     addSequenceOptions(*parser, options->sequence);
     parser->add_option("-o,--output", options->output, "folder for the capture; it appears whole or not at all");
-    parser->add_option("--only", options->only, "passes whose buffers are kept: " + passNames())->delimiter(',')->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes whose buffers are kept: " + passNames())
+        ->check(passNameError, "")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     parser->add_flag("--no-dds", options->noDds, "leave out the DDS files");
     parser->add_flag("--no-pictures", options->noPictures, "leave out the EXR files and the contact sheet");
     return {parser, [options] { return run(*options); }};

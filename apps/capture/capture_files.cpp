@@ -65,6 +65,26 @@ Capture readManifest(const std::string& folder)
     return captureFromManifest(parseJson(readFile(path), path), path);
 }
 
+std::vector<std::string> filesOfCapture(const std::string& folder)
+{
+    std::vector<std::string> files;
+    try {
+        // Of any version: names are all that counts.
+        const Json manifest = parseJson(readFile(pathIn(folder, kManifestFile)), folder);
+        const auto add = [&](const Json& owner) {
+            if (owner.is_object() && owner.contains("file") && owner["file"].is_string()) files.push_back(owner["file"].get<std::string>());
+        };
+        if (!manifest.is_object() || !manifest.contains("buffers") || !manifest["buffers"].is_array()) return {};
+        for (const Json& buffer : manifest["buffers"]) {
+            add(buffer);
+            if (buffer.is_object() && buffer.contains("dds")) add(buffer["dds"]);
+        }
+    } catch (const InputError&) {
+        return {};
+    }
+    return files;
+}
+
 Capture readCapture(const std::string& folder)
 {
     Capture capture = readManifest(folder);

@@ -9,6 +9,9 @@ namespace lrsm {
 /// Equal captures give equal bytes.
 void writeCapture(OutputFolder& folder, const Capture& capture);
 
+/// What the capture in `folder` consists of, pictures apart, by its manifest; nothing where there is none that can be read.
+std::vector<std::string> filesOfCapture(const std::string& folder);
+
 /// Bytes of the .npy and DDS that writeCapture will write; of the buffers only their description counts.
 std::size_t predictCaptureBytes(const std::vector<Buffer>& buffers);
 

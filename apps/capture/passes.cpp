@@ -369,6 +369,16 @@ std::string passNames(const std::string& ofLights)
     return text;
 }
 
+std::string passNameError(const std::string& asked)
+{
+    const std::vector<PassRow>& rows = passRows();
+    const std::string family = plain(passFamily(asked));
+    const bool known = std::any_of(rows.begin(), rows.end(), [&](const PassRow& row) {
+        return !row.given && (plain(row.family) == plain(asked) || (row.perLight && plain(row.family) == family));
+    });
+    return known ? "" : "\"" + asked + "\" is no pass; they are " + passNames(" (of all lights; rsm0 of one)");
+}
+
 std::vector<Buffer> describeBuffers(const DescribedFrame& frame)
 {
     Catalogue out;

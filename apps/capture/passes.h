@@ -53,6 +53,9 @@ bool isAskedFor(const std::vector<std::string>& asked, const std::string& pass);
 /// "voxelize, voxel-mips, ...", as they may be asked for; `ofLights` stands behind the first run of those with a pass a light.
 std::string passNames(const std::string& ofLights = "");
 
+/// Why `asked` is no pass to ask for, with a list of those that are; "" where it is one. For a command line's check.
+std::string passNameError(const std::string& asked);
+
 /// Every buffer of a frame, described but empty: names, shapes, meanings, tolerances.
 std::vector<Buffer> describeBuffers(const DescribedFrame& frame);
 

@@ -11,6 +11,7 @@ namespace lrsm {
 namespace {
 
 constexpr int kThumbnailWidth = 256, kColumns = 4, kGap = 8;
+constexpr const char *kFrameExr = "frame.exr", *kSheetFile = "contact-sheet.png";
 constexpr Rgb8 kBackground{48, 48, 48};
 
 bool isPicture(const Buffer& b)
@@ -126,14 +127,24 @@ void writeSheet(OutputFolder& folder, const Capture& capture)
         for (int y = 0; y < thumbnails[i].height; ++y)
             for (int x = 0; x < thumbnails[i].width; ++x) sheet.at(left + x, top + y) = thumbnails[i].at(x, y);
     }
-    folder.write("contact-sheet.png", encodePng(sheet));
+    folder.write(kSheetFile, encodePng(sheet));
 }
 
 }  // namespace
 
+std::vector<std::string> pictureFiles(const std::vector<std::string>& files)
+{
+    std::vector<std::string> pictures = {kFrameExr, kSheetFile};
+    for (const std::string& file : files) {
+        const std::string exr = file.substr(0, file.find('.')) + ".exr";
+        if (file.starts_with("rsm") && pictures.back() != exr) pictures.push_back(exr);
+    }
+    return pictures;
+}
+
 void writePictures(OutputFolder& folder, const Capture& capture)
 {
-    writeExr(folder, capture, "frame.exr", "rsm", false);
+    writeExr(folder, capture, kFrameExr, "rsm", false);
     for (std::size_t i = 0; i < capture.lights.size(); ++i) {
         const std::string name = "rsm" + std::to_string(i);
         writeExr(folder, capture, name + ".exr", name + ".", true);

@@ -10,4 +10,7 @@ class OutputFolder;
 /// buffers that are left out nothing is written. Deterministic; `check` does not read them.
 void writePictures(OutputFolder& folder, const Capture& capture);
 
+/// The names of all that it may write beside buffers in `files`.
+std::vector<std::string> pictureFiles(const std::vector<std::string>& files);
+
 }  // namespace lrsm

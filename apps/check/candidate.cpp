@@ -38,6 +38,7 @@ class CandidateReader {
         for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, error))
             if (entry.is_regular_file(error)) files_.insert(entry.path().filename().string());
         if (error) throw InputError(folder, "cannot be listed");
+        if (has(kManifestFile)) leaveOutStrangers();
     }
 
     std::optional<CandidateBuffer> read(const Buffer& golden)
@@ -90,7 +91,32 @@ class CandidateReader {
         return notes;
     }
 
+    /// Of a capture's folder: what is called as a buffer of the golden is, and is not in its manifest.
+    std::string strangersNote() const
+    {
+        if (strangers_.empty()) return "";
+        const bool one = strangers_.size() == 1;
+        return std::to_string(strangers_.size()) + (one ? " buffer is" : " buffers are") +
+               " not in the candidate's manifest, and left out as of another run: " + strangers_.front() + (one ? "" : " ...");
+    }
+
   private:
+    void leaveOutStrangers()
+    {
+        const std::vector<std::string> own = filesOfCapture(folder_);
+        if (own.empty()) return;
+        const auto leaveOut = [&](const std::string& file) {
+            if (has(file) && std::find(own.begin(), own.end(), file) == own.end()) {
+                files_.erase(file);
+                strangers_.push_back(file);
+            }
+        };
+        for (const Buffer& buffer : golden_.buffers) {
+            leaveOut(buffer.file);
+            if (buffer.dds) leaveOut(buffer.dds->file);
+        }
+    }
+
     bool has(const std::string& file) const { return files_.contains(file); }
     static bool isData(const std::string& extension) { return extension == ".npy" || extension == ".dds" || extension == ".bin" || extension == ".raw"; }
     std::string path(const std::string& file)
@@ -245,6 +271,7 @@ class CandidateReader {
     const Capture& golden_;
     std::vector<MapEntry> map_;
     std::set<std::string> files_, used_;
+    std::vector<std::string> strangers_;
     std::map<std::string, DdsTexture> textures_;
     std::map<std::pair<std::string, Transfer>, LayeredImage> pictures_;
     std::map<std::string, std::vector<std::string>> arrays_;
@@ -289,6 +316,7 @@ Candidate readCandidate(const std::string& folder, const Capture& golden, const 
             candidate.unreadable.push_back({buffer.name, error.what()});
         }
     }
+    if (const std::string note = reader.strangersNote(); !note.empty()) candidate.notes.push_back(note);
     candidate.nearMisses = nearMisses(golden, reader.namesHeld(), map);
     candidate.notes.insert(candidate.notes.end(), candidate.nearMisses.begin(), candidate.nearMisses.end());
     for (const std::string& note : reader.pictureNotes()) candidate.notes.push_back(note);

@@ -174,7 +174,7 @@ std::string sectionOf(const CheckedBuffer& b, const Capture& inputs, const std::
 }
 
 constexpr std::string_view kBundleStyle =
-    ".row { display: flex; flex-wrap: wrap; gap: 1em } .row img { max-width: 400px; image-rendering: pixelated } "
+    ".row { display: flex; flex-wrap: wrap; gap: 1em } .row img { width: 400px; max-width: 100%; image-rendering: pixelated } "
     "figcaption { text-align: center } td { text-align: left }";
 
 }  // namespace

@@ -136,7 +136,7 @@ Command addCheck(CLI::App& program)
     parser->add_option("--map", options->map, "JSON that says where the candidate's buffers are, and how they are stored");
     parser->add_flag("--from-golden", options->fromGolden, "judge each pass by what ours makes of the candidate's own inputs");
     parser->add_flag("--exact", options->exact, "every buffer must have the golden's very bits, whatever its tolerance: for captures by this program");
-    parser->add_option("--only", options->only, "passes to compare: " + passNames())->delimiter(',')->allow_extra_args(false);
+    parser->add_option("--only", options->only, "passes to compare: " + passNames())->check(passNameError, "")->delimiter(',')->allow_extra_args(false);
     parser->add_option("--junit", options->junit, "file for a JUnit report");
     parser->add_flag("--no-hints", options->noHints, "compare only: do not look for what the error may be");
     parser->add_flag("--bless", options->bless, "make the candidate, a whole capture of the same frame, the golden");

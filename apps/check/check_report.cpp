@@ -1,6 +1,6 @@
 #include "apps/check/check_report.h"
 
-#include "core/report/html.h"
+#include "core/report/junit.h"
 #include "core/report/table.h"
 
 #include <algorithm>
@@ -92,16 +92,6 @@ Json comparisonJson(const Buffer& buffer, const BufferComparison& c)
     return json;
 }
 
-/// XML 1.0 has no place for control characters, escaped or not.
-std::string xmlText(std::string text)
-{
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; }, '?');
-    // Bytes that are no UTF-8 (file names may hold any) become U+FFFD, as in JSON.
-    const std::string valid = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-    return htmlEscaped(Json::parse(valid).get<std::string>());
-}
-
 std::string failureText(const CheckedBuffer& b)
 {
     const BufferComparison& c = b.comparison();
@@ -115,15 +105,15 @@ std::string failureText(const CheckedBuffer& b)
     return text;
 }
 
-std::string testCase(const CheckedBuffer& b)
+JUnitCase testCase(const CheckedBuffer& b)
 {
-    std::string xml = "    <testcase classname=\"" + xmlText(b.golden->pass) + "\" name=\"" + xmlText(b.golden->name) + "\"";
-    if (b.verdict == Verdict::wrong)
-        return xml + ">\n      <failure message=\"" + xmlText(b.comparison().why) + "\">" + xmlText(failureText(b)) + "</failure>\n    </testcase>\n";
-    if (b.verdict == Verdict::unreadable) return xml + ">\n      <error message=\"" + xmlText(b.note) + "\"/>\n    </testcase>\n";
-    if (b.verdict == Verdict::missing) return xml + ">\n      <skipped message=\"not in the candidate\"/>\n    </testcase>\n";
-    if (b.verdict == Verdict::inherits) return xml + ">\n      <system-out>differs from the golden as its inputs do</system-out>\n    </testcase>\n";
-    return xml + "/>\n";
+    switch (b.verdict) {
+    case Verdict::wrong: return {b.golden->name, JUnitCase::Verdict::failed, b.comparison().why, failureText(b)};
+    case Verdict::unreadable: return {b.golden->name, JUnitCase::Verdict::error, b.note};
+    case Verdict::missing: return {b.golden->name, JUnitCase::Verdict::skipped, "not in the candidate"};
+    case Verdict::inherits: return {b.golden->name, JUnitCase::Verdict::passed, "", "differs from the golden as its inputs do"};
+    default: return {b.golden->name};
+    }
 }
 
 }  // namespace
@@ -166,27 +156,12 @@ Json checkJson(const CheckReport& report)
 
 std::string checkJUnit(const CheckReport& report, const std::string& name)
 {
-    struct Suite {
-        std::string pass, cases;
-        std::size_t tests = 0, failures = 0, errors = 0, skipped = 0;
-    };
-    std::vector<Suite> suites;
+    std::vector<JUnitSuite> suites;
     for (const CheckedBuffer& b : report.buffers) {
-        if (suites.empty() || suites.back().pass != b.golden->pass) suites.push_back({b.golden->pass, "", 0, 0, 0, 0});
-        Suite& suite = suites.back();
-        ++suite.tests;
-        suite.failures += b.verdict == Verdict::wrong ? 1 : 0;
-        suite.errors += b.verdict == Verdict::unreadable ? 1 : 0;
-        suite.skipped += b.verdict == Verdict::missing ? 1 : 0;
-        suite.cases += testCase(b);
+        if (suites.empty() || suites.back().name != b.golden->pass) suites.push_back({b.golden->pass});
+        suites.back().cases.push_back(testCase(b));
     }
-    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"" + xmlText(name) + "\" tests=\"" +
-                      std::to_string(report.buffers.size()) + "\" failures=\"" + std::to_string(report.count(Verdict::wrong)) + "\" errors=\"" +
-                      std::to_string(report.count(Verdict::unreadable)) + "\" skipped=\"" + std::to_string(report.count(Verdict::missing)) + "\">\n";
-    for (const Suite& suite : suites)
-        xml += "  <testsuite name=\"" + xmlText(suite.pass) + "\" tests=\"" + std::to_string(suite.tests) + "\" failures=\"" + std::to_string(suite.failures) +
-               "\" errors=\"" + std::to_string(suite.errors) + "\" skipped=\"" + std::to_string(suite.skipped) + "\">\n" + suite.cases + "  </testsuite>\n";
-    return xml + "</testsuites>\n";
+    return junitXml(name, suites);
 }
 
 }  // namespace lrsm

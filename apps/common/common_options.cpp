@@ -10,10 +10,10 @@ namespace lrsm {
 
 namespace {
 
-/// Two whole numbers around a separator; nothing else in the text.
-bool parsePair(const std::string& text, char separator, IVec2& pair)
+/// Two whole numbers around one of the separators; nothing else in the text.
+bool parsePair(const std::string& text, const char* separators, IVec2& pair)
 {
-    const std::size_t at = text.find(separator);
+    const std::size_t at = text.find_first_of(separators);
     if (at == std::string::npos) return false;
     const char *begin = text.data(), *middle = begin + at, *end = begin + text.size();
     const auto first = std::from_chars(begin, middle, pair.x), second = std::from_chars(middle + 1, end, pair.y);
@@ -92,8 +92,9 @@ void addPictureOptions(CLI::App& parser, CommonOptions& options)
 
 void addRunOptions(CLI::App& parser, CommonOptions& options)
 {
-    parser.add_option("--threads", options.threads, "0: all the machine has; the picture does not depend on it")->check(CLI::Range(0, 1024));
-    parser.add_flag("--quiet", options.quiet, "no progress, no summary");
+    parser.add_option("--threads", options.threads, "0: all the machine has; the picture does not depend on it")->check(CLI::Range(0, 1024))->type_name("N");
+    parser.add_flag("-q,--quiet", options.quiet, "no progress, no summary");
+    parser.add_flag("-v,--verbose", options.verbose, "every note on the scene, not one a kind");
     parser.add_flag("--json", options.json, "JSON on standard output");
 }
 
@@ -133,7 +134,7 @@ IVec2 chosenSize(const CommonOptions& options)
 {
     constexpr int kMax = 16384;
     IVec2 size(0);
-    if (!parsePair(options.size, 'x', size) || size.x < 1 || size.y < 1 || size.x > kMax || size.y > kMax)
+    if (!parsePair(options.size, "xX", size) || size.x < 1 || size.y < 1 || size.x > kMax || size.y > kMax)
         throw InputError("--size " + options.size, "must be WxH with sides of 1 .. " + std::to_string(kMax) + " pixels, as 1280x720");
     return size;
 }
@@ -149,7 +150,7 @@ std::optional<float> parseExposure(const std::string& text)
 IVec2 parsePixel(const std::string& text, const IVec2& size)
 {
     IVec2 pixel(0);
-    if (!parsePair(text, ',', pixel) || pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
+    if (!parsePair(text, ",", pixel) || pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
         throw InputError("--pixel " + text,
                          "must be x,y inside the picture of " + std::to_string(size.x) + "x" + std::to_string(size.y) + ", counted from the top left");
     return pixel;

@@ -27,7 +27,7 @@ struct CommonOptions {
     std::string size = "1280x720";
     // addRunOptions
     int threads = 0;
-    bool quiet = false;
+    bool quiet = false, verbose = false;
     bool json = false;
 };
 

@@ -115,9 +115,10 @@ void writeFrame(OutputFolder& folder, const Frame& frame, const FrameRecord& rec
         png("depth.png", [&] { return depthPicture(frame.gbuffer.depthLinear); }),
         png("opacity.png", [&] { return falseColor(frame.opacity, 0.0f, 1.0f); }),
     };
-    if (record.caches) files.push_back(png("caches.png", [&] { return cachesPicture(*record.caches, stops); }));
+    if (record.caches) files.push_back(png(kCachesPicture, [&] { return cachesPicture(*record.caches, stops); }));
     if (record.proxies)
-        files.push_back(png("proxies.png", [&] { return proxiesPicture(*record.proxies, record.camera, frame.combined.width, frame.combined.height, stops); }));
+        files.push_back(
+            png(kProxiesPicture, [&] { return proxiesPicture(*record.proxies, record.camera, frame.combined.width, frame.combined.height, stops); }));
     std::vector<std::vector<std::byte>> encoded(files.size());
     parallelFor(encoded.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) encoded[i] = files[i].encode();

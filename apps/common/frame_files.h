@@ -13,6 +13,8 @@
 /// The files of a rendered frame: image.exr, image.png and a PNG a part, frame.json. docs/file-formats.md says what is in them.
 namespace lrsm {
 
+inline constexpr const char *kCachesPicture = "caches.png", *kProxiesPicture = "proxies.png";  ///< the files that not every frame has
+
 /// What made the frame.
 struct FrameRecord {
     const Scene& scene;

@@ -26,9 +26,9 @@ void enforceMemoryLimit(const MemoryQuestion& question, double maxMegabytes)
     std::size_t needed = bytesWith(Unknowns::least);
     if (static_cast<double>(needed) <= limit) needed = bytesWith(Unknowns::found);
     if (static_cast<double>(needed) > limit)
-        throw InputError(
-            "--max-memory " + numberText(6, maxMegabytes),
-            "this frame needs " + megabytes(needed) + "; lower voxel_resolution, rsm_resolution, the layers or --size (lrsm info shows each part)");
+        throw InputError("--max-memory " + numberText(6, maxMegabytes),
+                         "this frame needs " + megabytes(needed) +
+                             "; lower --set voxel_resolution=N, rsm_resolution=N, depth_layers=N, normal_layers=N or --size (lrsm info shows each part)");
 }
 
 nlohmann::ordered_json memoryJson(const std::vector<MemoryRow>& rows)

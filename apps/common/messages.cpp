@@ -181,9 +181,9 @@ std::string whyDark(const Scene& scene, const SeenSurfaces& seen, const Light& l
 
 }  // namespace
 
-std::vector<std::string> loadMessages(const Scene& scene)
+std::vector<std::string> loadMessages(const Scene& scene, bool all)
 {
-    std::vector<std::string> lines = oneAKind(scene.notes);
+    std::vector<std::string> lines = all ? scene.notes : oneAKind(scene.notes);
     const auto dark = std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return !shines(light); });
     if (dark > 0) lines.push_back(count(double(dark), "light") + " of " + std::to_string(scene.lights.size()) + " with intensity 0");
     return lines;

@@ -11,8 +11,8 @@
 /// What a user should know that the picture alone does not tell: one line a kind, on standard error, whatever --quiet says.
 namespace lrsm {
 
-/// What loading skipped, replaced or assumed (Scene::notes), notes that differ in a name alone put together; and lights of intensity 0.
-std::vector<std::string> loadMessages(const Scene& scene);
+/// What loading skipped, replaced or assumed (Scene::notes), notes that differ in a name alone put together unless `all`; and lights of intensity 0.
+std::vector<std::string> loadMessages(const Scene& scene, bool all = false);
 
 /// Where the scene's extent costs: the grid covers a part, a voxel is larger than what is in view, a light's depths are coarser than a shadow's bias.
 std::vector<std::string> extentMessages(const Scene& scene, const Camera& camera, const Settings& settings);

@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
+#include "core/report/table.h"
 #include "core/scene/scene_hash.h"
 
 #include <charconv>
@@ -145,7 +146,7 @@ bool makeFrame(const SequenceJob& job, const SequenceFrame& frame, Json entry, c
     // Files that replace others do it one by one, this one last: until then the frame is none.
     std::error_code ignored;
     fs::remove(path / kFrameFile, ignored);
-    folder.commit();
+    folder.commit(job.earlier);
     return true;
 }
 
@@ -181,7 +182,8 @@ Tally makeAll(const SequenceJob& job, const CommonOptions& options, const SceneS
         }
         ++tally.made;
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        if (!job.quiet && !job.json) std::cout << "  " << frameName(i) << "  at " << frame.time << " s, took " << seconds.count() << " s" << std::endl;
+        if (!job.quiet && !job.json)
+            std::cout << "  " << frameName(i) << "  at " << shortNumber(double(frame.time)) << " s, took " << shortNumber(seconds.count()) << " s" << std::endl;
         tally.interrupted = catching.asked() && i + 1 < job.range.end;
     }
     return tally;

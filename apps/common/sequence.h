@@ -58,6 +58,7 @@ struct SequenceJob {
     bool quiet = false, json = false;
     /// Writes the frame's files, kFrameFile apart, and does not commit. False when it was interrupted: what it keeps for next time is then its own affair.
     std::function<bool(const SequenceFrame&, OutputFolder&)> make;
+    OutputFolder::Earlier earlier = {};  ///< of a frame's folder that is written anew
 };
 
 /// Makes the frames that are not there yet, in order, and sequence.json. All views are checked before the first frame. Returns the exit code: kInterruptedCode

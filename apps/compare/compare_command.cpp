@@ -354,7 +354,7 @@ Command addCompare(CLI::App& program)
     parser->add_option("--ppd", options->pixelsPerDegree, "pixels per degree of FLIP's viewer")->capture_default_str();
     parser->add_flag("--allow-nan", options->allowNan, "pixels that are not finite are left out instead of failing");
     parser->add_flag("--all-pixels", options->allPixels, "count pixels where the eye sees nothing, too");
-    parser->add_flag("--quiet", options->quiet, "no table");
+    parser->add_flag("-q,--quiet", options->quiet, "no table");
     parser->add_flag("--json", options->json, "JSON on standard output");
     return {parser, [options] { return runCompare(*options); }};
 }

@@ -142,16 +142,23 @@ double movedByOneDepthLayer(const Lrsm& lrsm, int level)
     return all > 0.0 ? movedLight / all : 0.0;
 }
 
-SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, int width, int height)
+bool sameMaps(const Settings& a, const Settings& b)
+{
+    return a.surface == b.surface && a.voxel == b.voxel && a.rsm == b.rsm && a.layers == b.layers && a.force == b.force;
+}
+
+SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, int width, int height,
+                           const SceneAnalysis* known)
 {
     const FloatState state;
     checkScene(scene);
     validate(settings);
     const VoxelGrid grid = gridOf(scene, settings.voxel);
     const double voxelSize = double(grid.voxelSize);
-    SceneAnalysis out;
+    SceneAnalysis out = known ? *known : SceneAnalysis();
     out.needs = needs;
     out.finestTap = narrowestTap(settings, grid.resolution) * voxelSize;
+    if (known) return out;
     for (const Light& light : scene.lights) {
         const Rsm rsm = renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter);
         out.lights.push_back(analyseLight(light, rsm, buildLrsm(rsm, settings.layers), kMapTapVoxels * voxelSize));

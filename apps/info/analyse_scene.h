@@ -38,7 +38,12 @@ struct SceneAnalysis {
 /// Layers are merged for comparison at the level that a tap this wide reads, in base voxels: diffuse cones of some 30 voxels and more read such.
 inline constexpr double kMapTapVoxels = 4.0;
 
-/// Renders each light's RSM, splits it into layers, and renders the G-buffer at `width` x `height`; no voxels, no cones.
-SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, int width, int height);
+/// Renders each light's RSM, splits it into layers, and renders the G-buffer at `width` x `height`; no voxels, no cones. `known`, an analysis of the same
+/// scene by settings whose maps are the same, saves all of that.
+SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, int width, int height,
+                           const SceneAnalysis* known = nullptr);
+
+/// Do settings differ in cones and direct light alone, and so not in light maps, layers and voxels?
+bool sameMaps(const Settings& a, const Settings& b);
 
 }  // namespace lrsm

@@ -1,5 +1,6 @@
 #include "apps/common/commands.h"
 #include "apps/common/describe.h"
+#include "apps/common/earlier_result.h"
 #include "apps/reference/reference_files.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
@@ -55,6 +56,7 @@ int runMerge(const MergeArguments& options)
     {
         const OutputFolder writable(options.output);
     }
+    refuseOtherResult(options.output, "reference");
 
     Checkpoint merged = readFinished(options.folders[0]);
     Json json = readFrameJson(options.folders[0]);
@@ -100,7 +102,7 @@ Command addMerge(CLI::App& program)
     parser->add_option("FOLDER", options->folders, "folders written by lrsm reference")->required()->expected(1, 1 << 20);
     parser->add_option("-o,--output", options->output, "folder for the results");
     parser->add_flag("--allow-gaps", options->allowGaps, "join ranges that do not touch");
-    parser->add_flag("--quiet", options->quiet, "no summary");
+    parser->add_flag("-q,--quiet", options->quiet, "no summary");
     parser->add_flag("--json", options->json, "JSON on standard output");
     return {parser, [options] { return runMerge(*options); }};
 }

@@ -1,6 +1,7 @@
 #include "apps/common/commands.h"
 #include "apps/common/common_options.h"
 #include "apps/common/describe.h"
+#include "apps/common/earlier_result.h"
 #include "apps/common/interrupts.h"
 #include "apps/common/messages.h"
 #include "apps/common/progress.h"
@@ -10,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
+#include "core/report/table.h"
 #include "core/scene/scene_hash.h"
 
 #include <atomic>
@@ -146,7 +148,7 @@ std::optional<Traced> traceTo(OutputFolder& folder, const ReferencePlan& plan, c
 {
     const ReferenceArguments& arguments = plan.arguments;
     const std::string path = folder.path().string();
-    sayOnce(loadMessages(scene));
+    sayOnce(loadMessages(scene, arguments.verbose));
     Progress progress(arguments.quiet);
     progress.show("building the BVH", 0.0);
     const PathTracer tracer(scene, camera, plan.settings);
@@ -175,28 +177,29 @@ int traceFrames(const ReferencePlan& plan, const FrameRange& range)
 {
     const ReferenceArguments& arguments = plan.arguments;
     SayOnce sayOnce;
-    return runSequence({.range = range,
-                        .folder = arguments.output,
-                        .common = {{"command", "reference"},
-                                   {"size", {plan.settings.width, plan.settings.height}},
-                                   {"exposure", arguments.exposure},
-                                   {"samples", arguments.targetNoise != 0.0 ? "" : describeRanges({plan.range})},
-                                   {"target_noise", arguments.targetNoise},
-                                   {"settings", referenceSettingsJson(plan.settings)}},
-                        .mainFile = "image.exr",
-                        .quiet = arguments.quiet,
-                        .json = arguments.json,
-                        .make =
-                            [&](const SequenceFrame& frame, OutputFolder& folder) {
-                                return traceTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, true, frame.stop, sayOnce).has_value();
-                            }},
-                       arguments);
+    return runSequence(
+        {.range = range,
+         .folder = arguments.output,
+         .common = {{"command", "reference"},
+                    {"size", {plan.settings.width, plan.settings.height}},
+                    {"exposure", arguments.exposure},
+                    {"samples", arguments.targetNoise != 0.0 ? "" : describeRanges({plan.range})},
+                    {"target_noise", arguments.targetNoise},
+                    {"settings", referenceSettingsJson(plan.settings)}},
+         .mainFile = "image.exr",
+         .quiet = arguments.quiet,
+         .json = arguments.json,
+         .make = [&](const SequenceFrame& frame,
+                     OutputFolder& folder) { return traceTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, true, frame.stop, sayOnce).has_value(); },
+         .earlier = leftBy("reference", {kSpecularPicture})},
+        arguments);
 }
 
 int runReference(const ReferenceArguments& arguments)
 {
     const ReferencePlan plan = planReference(arguments);
     const ThreadLimit threads(arguments.threads);
+    refuseOtherResult(arguments.output, "reference");
     if (const std::optional<FrameRange> range = chosenFrames(arguments.sequence)) return traceFrames(plan, *range);
 
     OutputFolder folder(arguments.output);  // fails now rather than after hours
@@ -209,18 +212,18 @@ int runReference(const ReferenceArguments& arguments)
         std::cerr << "lrsm: interrupted; what is done is in " << arguments.output << " (--resume continues)" << std::endl;
         return kInterruptedCode;
     }
-    folder.commit();
+    folder.commit(leftBy("reference", {kSpecularPicture}));
     const Json& json = traced->json;
     if (arguments.json)
         std::cout << jsonText(json);
     else if (!arguments.quiet) {
-        std::cout << "  " << json["samples"] << " samples a pixel, " << arguments.model << ", " << json["rays"]["total"].get<double>() * 1e-6
-                  << " million rays in " << json["rays"]["seconds"].get<double>() << " s: " << json["rays"]["million_per_second"].get<double>()
-                  << " million a second\n";
-        if (std::isfinite(traced->noise)) std::cout << "  noise of the irradiance, RMSE / mean: " << traced->noise << "\n";
+        const auto figure = [](const Json& value) { return shortNumber(value.get<double>()); };
+        std::cout << "  " << json["samples"] << " samples a pixel, model " << arguments.model << ", " << shortNumber(json["rays"]["total"].get<double>() * 1e-6)
+                  << " million rays in " << figure(json["rays"]["seconds"]) << " s: " << figure(json["rays"]["million_per_second"]) << " million a second\n";
+        if (std::isfinite(traced->noise)) std::cout << "  noise of the irradiance, RMSE / mean: " << shortNumber(traced->noise) << "\n";
         if (arguments.bareLoop)
-            std::cout << "  bare loop over the same kind of rays: " << json["bare_loop"]["million_per_second"].get<double>() << " million a second; ratio "
-                      << json["bare_loop"]["ratio"].get<double>() << "\n";
+            std::cout << "  bare loop over the same kind of rays: " << figure(json["bare_loop"]["million_per_second"]) << " million a second; ratio "
+                      << figure(json["bare_loop"]["ratio"]) << "\n";
         std::cout << folder.path().string() << ": image.exr, PNGs, frame.json, samples.bin\n";
     }
     return 0;

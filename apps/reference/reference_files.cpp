@@ -100,7 +100,7 @@ ReferenceFrame writeReference(OutputFolder& folder, const Checkpoint& checkpoint
     folder.write("direct.png", encodePng(tonemap(frame.direct, stops)));
     folder.write("irradiance.png", encodePng(tonemap(onWhite(frame.irradiance), stops)));
     folder.write("indirect.diffuse.png", encodePng(tonemap(frame.indirectDiffuse, stops)));
-    if (anyLight(frame.indirectSpecular)) folder.write("indirect.specular.png", encodePng(tonemap(frame.indirectSpecular, stops)));
+    if (anyLight(frame.indirectSpecular)) folder.write(kSpecularPicture, encodePng(tonemap(frame.indirectSpecular, stops)));
     folder.write("frame.json", jsonText(complete));
     folder.write(kSamplesFile, encodeCheckpoint(checkpoint));
     return frame;

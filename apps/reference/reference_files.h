@@ -11,6 +11,7 @@
 namespace lrsm {
 
 inline constexpr const char* kSamplesFile = "samples.bin";
+inline constexpr const char* kSpecularPicture = "indirect.specular.png";  ///< not written where it would be black
 
 /// What the picture shows besides light: taken from the tracer, or from image.exr when ranges are merged.
 struct SeenLayers {

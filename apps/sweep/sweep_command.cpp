@@ -16,6 +16,7 @@
 #include "core/settings/settings_table.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct SweepArguments : CommonOptions {
     std::vector<std::string> scenes;
-    std::string output, axesFile, references;
+    std::string output, axesFile, references, part;
     std::vector<std::string> axes;
     std::uint64_t samples = 1024, pathTracerSamples = 1024, seed = 0;
     int repeat = 3, budget = 100;
@@ -47,6 +48,23 @@ Plan chosenPlan(const SweepArguments& options)
     if (options.axesFile == "search") return Plan::search;
     if (options.axesFile == "one-at-a-time" || (options.axesFile.empty() && options.axes.empty())) return Plan::oneAtATime;
     return Plan::product;
+}
+
+/// Of --part I/K: every K-th row of the plan, from the I-th on.
+struct Part {
+    std::size_t index = 0, count = 1;
+    bool holds(std::size_t row) const { return row % count == index; }
+};
+Part chosenPart(const SweepArguments& options, Plan plan)
+{
+    Part part;
+    if (options.part.empty()) return part;
+    constexpr std::size_t kMost = 1000000;
+    char end = 0;
+    if (std::sscanf(options.part.c_str(), "%zu/%zu%c", &part.index, &part.count, &end) != 2 || part.count > kMost || part.index >= part.count)
+        throw InputError("--part " + options.part, "must be I/K with I = 0 .. K-1: one of K parts of the rows");
+    if (plan == Plan::search) throw InputError("--part " + options.part, "cannot part --axes search, whose rows are not known beforehand");
+    return part;
 }
 
 /// Settings beside the presets; the search's are not known beforehand.
@@ -192,20 +210,29 @@ std::vector<SweepTask> tasksOf(const std::vector<NamedSettings>& settings, std::
 }
 
 /// Presets, then the path tracer, then the rest. False when stopped.
-bool runAll(const SweepArguments& options, Plan plan, const std::vector<NamedSettings>& settings, const Settings& base, SweepRun& run,
+bool runAll(const SweepArguments& options, Plan plan, const Part& part, const std::vector<NamedSettings>& settings, const Settings& base, SweepRun& run,
             const std::vector<SweptCase>& cases)
 {
     std::vector<NamedSettings> presets;
     for (const std::string& name : presetNames()) presets.push_back({name, preset(name)});
-    const std::vector<SweepTask> first = tasksOf(presets, cases.size(), RowKind::preset, "");
+    std::size_t row = 0;
+    const auto ofThisPart = [&](std::vector<SweepTask> tasks) {
+        std::erase_if(tasks, [&](const SweepTask&) { return !part.holds(row++); });
+        return tasks;
+    };
+    const std::vector<SweepTask> first = ofThisPart(tasksOf(presets, cases.size(), RowKind::preset, ""));
     const bool pure = plan != Plan::points && base == preset(options.preset);
-    const std::vector<SweepTask> rest = tasksOf(settings, cases.size(), RowKind::axis, pure ? options.preset : "");
+    // The path tracer's rows of a case come from one run: one row of the plan.
+    std::vector<std::size_t> tracedCases;
+    for (std::size_t i = 0; i < cases.size() && options.pathTracerSamples > 0; ++i)
+        if (part.holds(row++)) tracedCases.push_back(i);
+    const std::vector<SweepTask> rest = ofThisPart(tasksOf(settings, cases.size(), RowKind::axis, pure ? options.preset : ""));
     std::size_t traced = 0;
     for (std::uint64_t n = 1, before = 0; before < options.pathTracerSamples; before = n, n = std::min(2 * n, options.pathTracerSamples)) ++traced;
-    run.expect(first.size() + traced * cases.size() + rest.size());
+    run.expect(first.size() + traced * tracedCases.size() + rest.size());
 
     if (!runTasks(run, first)) return false;
-    for (std::size_t i = 0; i < cases.size() && options.pathTracerSamples > 0; ++i)
+    for (const std::size_t i : tracedCases)
         if (!run.measurePathTracer(i, options.pathTracerSamples)) return false;
     if (!runTasks(run, rest)) return false;
     return plan != Plan::search || runSearch(options, base, run, cases);
@@ -215,6 +242,7 @@ int runSweep(const SweepArguments& options)
 {
     if (options.output.empty()) throw InputError("sweep", "needs -o FOLDER");
     const Plan plan = chosenPlan(options);
+    const Part part = chosenPart(options, plan);
     const Settings base = chosenSettings(options);
     if (options.repeat < 1 || options.repeat > 1000) throw InputError("--repeat " + std::to_string(options.repeat), "must be 1 .. 1000");
     if (!(options.maxMemoryMegabytes >= 0.0)) throw InputError("--max-memory", "must be 0 (no limit) or more");
@@ -224,6 +252,9 @@ int runSweep(const SweepArguments& options)
 
     if (options.reportOnly && !fs::is_regular_file(fs::path(options.output) / "rows.jsonl"))
         throw InputError(options.output, "holds no rows.jsonl; sweep first");
+    {
+        const OutputFolder writable(options.output);
+    }
     const ThreadLimit threads(options.threads);
     std::vector<SweptCase> cases = options.reportOnly ? std::vector<SweptCase>() : loadCases(options);
     RowStore store(options.output);
@@ -243,7 +274,7 @@ int runSweep(const SweepArguments& options)
                       .maxMemoryMegabytes = options.maxMemoryMegabytes,
                       .quiet = options.quiet,
                       .stop = &catching.asked()});
-        complete = runAll(options, plan, settings, base, run, cases);
+        complete = runAll(options, plan, part, settings, base, run, cases);
         measured = run.measured();
         found = run.found();
         skipped = run.skipped().size();
@@ -288,6 +319,8 @@ Command addSweep(CLI::App& program)
     parser->add_option("--budget", options->budget, "settings that the search visits")->capture_default_str();
     parser->add_option("--seed", options->seed, "of the search's random choices")->capture_default_str();
     parser->add_option("--max-memory", options->maxMemoryMegabytes, "MB of 10^6 bytes; settings that need more are skipped");
+    parser->add_option("--part", options->part,
+                       "I/K: only every K-th row, from the I-th on, so that K machines share the work (docs/cluster.md); not with --axes search");
     parser->add_flag("--report-only", options->reportOnly, "make report.html, tables.md, sweep.csv and sweep.json again from the rows");
     parser->footer("The presets are measured in any case. See docs/file-formats.md for the columns.");
     return {parser, [options] { return runSweep(*options); }};

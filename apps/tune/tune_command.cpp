@@ -9,6 +9,7 @@
 #include "apps/sweep/truth.h"
 #include "apps/tune/tune.h"
 #include "apps/tune/tune_report.h"
+#include "conetrace/lrsm/memory.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
@@ -73,10 +74,43 @@ TuneBudget chosenBudget(const TuneArguments& options)
     return budget;
 }
 
+/// Light maps are the same for many points: each kind is looked at once.
+class KnownMaps {
+  public:
+    KnownMaps(const Scene& scene, const Camera& camera, const IVec2& size) : scene_(scene), camera_(camera), size_(size) {}
+
+    SceneAnalysis analyse(const Settings& settings)
+    {
+        const auto known = std::find_if(analyses_.begin(), analyses_.end(), [&](const auto& each) { return sameMaps(each.first, settings); });
+        const SceneAnalysis analysis = analyseScene(scene_, camera_, analyseRequirements(scene_, settings.force), settings, size_.x, size_.y,
+                                                    known == analyses_.end() ? nullptr : &known->second);
+        if (known == analyses_.end()) analyses_.emplace_back(settings, analysis);
+        return analysis;
+    }
+
+    /// Bytes of a frame of the size.
+    std::size_t bytes(const Settings& settings)
+    {
+        const Requirements needs = analyseRequirements(scene_, settings.force);
+        MemoryQuestion question{scene_, needs, settings, size_.x, size_.y};
+        const auto known = std::find_if(layers_.begin(), layers_.end(), [&](const auto& each) { return sameMaps(each.first, settings); });
+        question.layersKept = known == layers_.end() ? layersKept(question) : known->second;
+        if (known == layers_.end()) layers_.emplace_back(settings, question.layersKept);
+        return frameBytes(predictMemory(question), size_.x, size_.y);
+    }
+
+  private:
+    const Scene& scene_;
+    const Camera& camera_;
+    IVec2 size_;
+    std::vector<std::pair<Settings, SceneAnalysis>> analyses_;
+    std::vector<std::pair<Settings, std::vector<int>>> layers_;
+};
+
 /// Takes out what this scene, seen like this, does not require; says what.
-std::vector<std::string> trim(Settings& settings, const Scene& scene, const Camera& camera, const IVec2& size)
+std::vector<std::string> trim(Settings& settings, const Scene& scene, KnownMaps& maps, const IVec2& size)
 {
-    const SceneAnalysis analysis = analyseScene(scene, camera, analyseRequirements(scene, settings.force), settings, size.x, size.y);
+    const SceneAnalysis analysis = maps.analyse(settings);
     const std::vector<Advice> advice = adviseSettings(scene, analysis, settings, size.x, size.y);
     std::vector<std::string> trimmed;
     for (const Advice& change : advice) trimmed.push_back(change.key + " " + change.from + " -> " + change.to + ": " + change.why);
@@ -88,20 +122,20 @@ std::vector<std::string> trim(Settings& settings, const Scene& scene, const Came
 std::vector<TunePoint> chosenPoints(const TuneArguments& options, const Scene& scene, const Camera& camera, const IVec2& size)
 {
     std::vector<TunePoint> points;
+    KnownMaps maps(scene, camera, size);
     for (NamedSettings& named : operatingPoints()) {
         for (const std::string& assignment : options.assignments) applySetting(named.settings, assignment);
         validate(named.settings);
         std::vector<std::string> trimmed;
-        if (!options.untrimmed) trimmed = trim(named.settings, scene, camera, size);
+        if (!options.untrimmed) trimmed = trim(named.settings, scene, maps, size);
         // What the user has fixed stays.
         for (const std::string& assignment : options.assignments) applySetting(named.settings, assignment);
         validate(named.settings);
         const auto same = [&](const TunePoint& point) { return point.named.settings == named.settings; };
         if (std::any_of(points.begin(), points.end(), same)) continue;
 
-        const Requirements needs = analyseRequirements(scene, named.settings.force);
-        const std::size_t bytes = frameBytes(predictMemory({scene, needs, named.settings, size.x, size.y}), size.x, size.y);
-        points.push_back({.named = named, .megabytes = double(bytes) * 1e-6, .probe = {}, .verified = {}, .skipped = {}, .trimmed = trimmed});
+        points.push_back(
+            {.named = named, .megabytes = double(maps.bytes(named.settings)) * 1e-6, .probe = {}, .verified = {}, .skipped = {}, .trimmed = trimmed});
     }
     return points;
 }

@@ -3,6 +3,8 @@
 #include "apps/common/describe.h"
 #include "apps/common/progress.h"
 #include "apps/validate/validation_report.h"
+#include "apps/validate/vectors/make_vectors.h"
+#include "apps/validate/vectors/vector_files.h"
 #include "core/base/errors.h"
 #include "core/base/output_folder.h"
 #include "core/base/parallel.h"
@@ -11,6 +13,7 @@
 #include "core/scene/load_scene.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -22,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ValidateArguments : CommonOptions {
-    std::string output, equation, only;
+    std::string output, equation, only, vectors, against, junit;
     int samples = LadderOptions().samples;
     std::uint64_t seed = LadderOptions().seed;
     bool extremes = false, noSpeed = false;
@@ -79,8 +82,69 @@ void writeResults(const std::string& path, const std::vector<ValidationPart>& pa
     folder.commit();
 }
 
+/// What says nothing beside --vectors and --against.
+void refuseBesideVectors(const ValidateArguments& options)
+{
+    const char* name = options.against.empty() ? "--vectors" : "--against";
+    if (!options.scene.empty() || !options.view.empty()) throw InputError(name, "is about equations, without a scene; leave out SCENE");
+    if (options.extremes || !options.only.empty()) throw InputError(name, "has no meaning with --extremes");
+    if (options.against.empty() && (!options.output.empty() || !options.junit.empty()))
+        throw InputError("--vectors", "writes its own folder and judges nothing; leave out -o and --junit, or add --against");
+}
+
+/// Inputs, exact results and what is allowed, for functions that were written elsewhere.
+int writeVectors(const ValidateArguments& options)
+{
+    OutputFolder folder(options.vectors);
+    Progress progress(options.quiet);
+    progress.show("vectors: searching for the hardest inputs", 0.0);
+    const std::vector<VectorSet> sets = makeVectors(options.equation);
+    progress.clear();
+    writeVectors(folder, sets, LRSM_VERSION);
+    folder.commit();
+    if (options.quiet) return 0;
+    std::size_t outputs = 0, cases = 0;
+    for (const VectorSet& set : sets) outputs += set.outputs.size(), cases += set.cases();
+    std::cout << options.vectors << ": " << outputs << " outputs of " << sets.size() << " functions, " << cases << " cases; " << kVectorsFile
+              << " says what each file is, and what yours are to be called\n";
+    return 0;
+}
+
+int judgeResults(const ValidateArguments& options)
+{
+    const std::string folder = options.vectors.empty() ? options.against : options.vectors;
+    if (!std::filesystem::exists(std::filesystem::path(folder) / kVectorsFile))
+        throw InputError(folder, std::string("holds no ") + kVectorsFile + "; write your results beside the vectors, or say where those are: --vectors DIR");
+    std::vector<VectorSet> sets = readVectors(folder);
+    if (!options.equation.empty()) keepEquation(sets, options.equation);
+    const Judgement judgement = judgeFolder(sets, options.against);
+    if (judgement.count(OutputVerdict::missing) == judgement.outputs.size())
+        throw InputError(options.against, "holds no result; " + std::string(kVectorsFile) + " says under \"write\" what each is to be called: " +
+                                              givenFile(*judgement.outputs.front().output) + (judgement.notes.empty() ? "" : "; " + judgement.notes.front()));
+
+    Json json = {{"version", LRSM_VERSION}};
+    const ValidationPart part = describeJudgement(judgement, json["vectors"]);
+    json["held"] = part.held;
+    if (!options.output.empty()) writeResults(options.output, {part}, json);
+    if (!options.junit.empty()) {
+        const std::string xml = judgementJUnit(judgement, options.against + " against the exact results");
+        writeFileWhole(options.junit, std::as_bytes(std::span(xml.data(), xml.size())));
+    }
+    if (options.json)
+        std::cout << jsonText(json);
+    else
+        std::cout << (options.quiet ? "" : part.text) << part.verdict << "\n";
+    return judgement.exitCode();
+}
+
 int runValidate(const ValidateArguments& options)
 {
+    if (!options.vectors.empty() || !options.against.empty()) {
+        refuseBesideVectors(options);
+        const ThreadLimit threads(options.threads);
+        return options.against.empty() ? writeVectors(options) : judgeResults(options);
+    }
+    if (!options.junit.empty()) throw InputError("--junit", "reports what --against judges; add --against DIR");
     if (options.extremes && !options.equation.empty()) throw InputError("--equation " + options.equation, "has no meaning with --extremes");
     if (!options.equation.empty() && !options.scene.empty())
         throw InputError("--equation " + options.equation, "is held against its oracle without a scene; leave out SCENE");
@@ -129,6 +193,11 @@ Command addValidate(CLI::App& program)
     addRunOptions(*parser, *options);
     parser->add_option("-o,--output", options->output, "folder for report.html, validate.json and CSV; they appear whole or not at all");
     parser->add_option("--equation", options->equation, "one equation alone: its number, or sec3, sec5, table1, fig7, base");
+    parser->add_option("--vectors", options->vectors,
+                       "write inputs, exact results and the allowed error of each equation and elementary function into this folder (docs/vectors.md); with "
+                       "--against, read them there");
+    parser->add_option("--against", options->against, "judge the results in this folder, computed elsewhere from the inputs of --vectors; 1 if one is wrong");
+    parser->add_option("--junit", options->junit, "with --against: file for a JUnit report");
     parser->add_option("--samples", options->samples, "cone samples of the error ladder")->check(CLI::Range(1, 1000000))->capture_default_str();
     parser->add_option("--seed", options->seed, "chooses which")->capture_default_str();
     parser->add_flag("--extremes", options->extremes, "the catalogue of extreme inputs instead");

@@ -3,6 +3,7 @@
 #include "apps/validate/equations/check_equations.h"
 #include "apps/validate/extremes/extremes.h"
 #include "apps/validate/ladder/ladder.h"
+#include "apps/validate/vectors/judge.h"
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -26,5 +27,8 @@ ValidationPart describeEquations(const EquationReport& report, nlohmann::ordered
 /// Measures and explains; there is no bound to break.
 ValidationPart describeLadders(const std::vector<LadderScene>& scenes, nlohmann::ordered_json& json);
 ValidationPart describeExtremes(const ExtremesReport& report, nlohmann::ordered_json& json);
+ValidationPart describeJudgement(const Judgement& judgement, nlohmann::ordered_json& json);
+/// A suite an equation, a case an output.
+std::string judgementJUnit(const Judgement& judgement, const std::string& name);
 
 }  // namespace lrsm

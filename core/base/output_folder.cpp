@@ -3,7 +3,9 @@
 #include "core/base/errors.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -39,6 +41,25 @@ void writeBytes(const fs::path& path, std::span<const std::byte> bytes)
     if (error) failed(path, error);
 }
 
+/// Held, it keeps other processes' commits to the folder waiting. Where a file system knows no locks there is none.
+class FolderLock {
+  public:
+    explicit FolderLock(const fs::path& folder) : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+    {
+        while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+        }
+    }
+    ~FolderLock()
+    {
+        if (folder_ >= 0) ::close(folder_);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    int folder_;
+};
+
 /// A new folder whose name begins with `prefix`, readable by all (mkdtemp's is for the owner alone).
 fs::path makeUniqueFolder(const fs::path& prefix, const fs::path& blame)
 {
@@ -58,6 +79,7 @@ OutputFolder::OutputFolder(const std::string& path)
     target_ = fs::absolute(path, error).lexically_normal();
     if (error) failed(path, error.value());
     if (!target_.has_filename()) target_ = target_.parent_path();  // "out/" is "out"
+    if (target_ == target_.root_path()) throw InputError(path, "is the root of the file system; -o needs a folder of its own");
 
     const fs::file_status status = fs::status(target_, error);
     if (fs::is_regular_file(status)) throw InputError(path, "is a file; -o needs a folder");
@@ -102,7 +124,7 @@ void OutputFolder::write(const std::string& name, std::span<const std::byte> byt
     names_.push_back(name);
 }
 
-void OutputFolder::commit()
+void OutputFolder::commit(const Earlier& earlier)
 {
     if (staging_.empty()) return;
     if (!top_.empty() && ::rename(staging_.c_str(), top_.c_str()) == 0) {
@@ -113,6 +135,10 @@ void OutputFolder::commit()
     std::error_code error;
     fs::create_directories(target_, error);
     if (error) failed(target_, error.value());
+    const FolderLock lock(target_);
+    if (earlier)
+        for (const std::string& name : earlier(target_))
+            if (std::find(names_.begin(), names_.end(), name) == names_.end() && fs::path(name).filename() == name) fs::remove(target_ / name, error);
     for (const std::string& name : names_)
         if (::rename((files_ / name).c_str(), (target_ / name).c_str()) != 0) failed(target_ / name, errno);
     removeStaging();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,9 +14,9 @@ namespace lrsm {
 ///
 /// They are written into a hidden folder beside the target and renamed by `commit`; without a commit the destructor removes every trace,
 /// missing parent folders included. A target that does not exist appears in one rename. Into one that exists, the files are renamed one by
-/// one, replacing files of the same name and leaving others alone.
+/// one, replacing files of the same name and leaving others alone; two processes that commit to one folder do so one after the other.
 ///
-/// Throws MachineError (disk full, no permission, target is a device) or InputError (empty path, target is a file).
+/// Throws MachineError (disk full, no permission, target is a device) or InputError (empty path, target is a file or the root).
 class OutputFolder {
   public:
     /// Finds out at once whether files can be made there, so that a long render does not end in a surprise. Leaves nothing behind.
@@ -26,7 +27,9 @@ class OutputFolder {
 
     void write(const std::string& name, std::span<const std::byte> bytes);
     void write(const std::string& name, std::string_view text) { write(name, std::as_bytes(std::span(text))); }
-    void commit();
+    /// Which files of the target an earlier run wrote: those that this one has not written go. Asked in commit, of a target that exists.
+    using Earlier = std::function<std::vector<std::string>(const std::filesystem::path& target)>;
+    void commit(const Earlier& earlier = {});
 
     const std::filesystem::path& path() const { return target_; }
     /// Where a file that was written lies until commit.

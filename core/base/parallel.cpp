@@ -1,6 +1,7 @@
 #include "core/base/parallel.h"
 
 #include "core/base/float_state.h"
+#include "core/base/threads.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -66,7 +67,7 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
 
 ThreadLimit::ThreadLimit(int threads)
 {
-    if (threads > 0) control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    if (threads > 0) control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, std::size_t(grantedThreads(threads)));
 }
 
 ThreadLimit::~ThreadLimit()

@@ -16,6 +16,12 @@ namespace lrsm {
 
 namespace {
 
+/// Otherwise OpenEXR starts as many threads as there are processors, whatever --threads and the system say.
+void useCallersThread()
+{
+    OIIO::attribute("exr_threads", -1);
+}
+
 constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
 
 /// OpenImageIO's messages may hold several lines; ours are one.
@@ -238,6 +244,7 @@ Image<float> scalarLayer(const LayeredImage& image, const std::string& name, con
 
 std::vector<std::byte> encodeExr(const LayeredImage& image)
 {
+    useCallersThread();
     OIIO::ImageSpec spec(image.width, image.height, 0, OIIO::TypeFloat);
     spec.channelnames.clear();
     for (const ImageLayer& layer : image.layers)
@@ -274,6 +281,7 @@ LayeredImage readImage(const std::string& path, Transfer transfer)
     if (std::filesystem::is_directory(path, ignored)) throw InputError(path, "is a folder, not a picture");
     if (!std::filesystem::exists(path, ignored)) throw InputError(path, "there is no such file");
 
+    useCallersThread();
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // otherwise the library multiplies a PNG's colours by its alpha
     const auto input = OIIO::ImageInput::open(path, &wishes);

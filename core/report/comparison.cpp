@@ -6,10 +6,10 @@ namespace lrsm {
 namespace {
 
 constexpr std::string_view kComparisonStyle = R"(
-.pair { position: relative; display: inline-block; max-width: 100%; line-height: 0; }
-.pair img { display: block; max-width: 100%; image-rendering: pixelated; }
+.pair { position: relative; width: 100%; max-width: 1280px; line-height: 0; }
+.pair img { display: block; width: 100%; image-rendering: pixelated; }
 .pair .over { position: absolute; left: 0; top: 0; height: 100%; overflow: hidden; width: 50%; border-right: 1px solid #fff; }
-.pair .over img { max-width: none; height: 100%; }
+.pair .over img { width: auto; height: 100%; }
 .controls { margin: .4em 0 1em; } .controls input[type=range] { width: min(40em, 60%); vertical-align: middle; }
 .maps { display: flex; flex-wrap: wrap; gap: 1em; } .maps img { max-width: 100%; width: 620px; image-rendering: pixelated; }
 )";

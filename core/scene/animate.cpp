@@ -8,21 +8,6 @@
 namespace lrsm::gltf {
 namespace {
 
-struct LocalTransform {
-    DVec3 translation, scale;
-    glm::dvec4 rotation;
-};
-
-DMat4 compose(const LocalTransform& local)
-{
-    const double x = local.rotation.x, y = local.rotation.y, z = local.rotation.z, w = local.rotation.w;
-    const DVec3 c0(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w));
-    const DVec3 c1(2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w));
-    const DVec3 c2(2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y));
-    return DMat4(glm::dvec4(c0 * local.scale.x, 0.0), glm::dvec4(c1 * local.scale.y, 0.0), glm::dvec4(c2 * local.scale.z, 0.0),
-                 glm::dvec4(local.translation, 1.0));
-}
-
 /// The keyframes about a time and how far it is between them; outside the range both are the end.
 struct Span {
     std::size_t k0 = 0, k1 = 0;
@@ -64,7 +49,34 @@ void applyChannel(const Channel& channel, float time, LocalTransform& local, std
     }
 }
 
+/// Unit axes of a matrix; one that has no length is made from the other two, or is its own.
+glm::dmat3 axesOf(const DMat4& matrix)
+{
+    glm::dmat3 axes;
+    std::array<bool, 3> known{};
+    for (int c = 0; c < 3; ++c) {
+        const DVec3 axis(matrix[c]);
+        const double length = std::sqrt(glm::dot(axis, axis));
+        known[std::size_t(c)] = length > 1e-150 && std::isfinite(length);
+        if (known[std::size_t(c)]) axes[c] = axis / length;
+    }
+    if (!known[0] && known[1] && known[2]) axes[0] = glm::cross(axes[1], axes[2]);
+    if (known[0] && !known[1] && known[2]) axes[1] = glm::cross(axes[2], axes[0]);
+    if (known[0] && known[1] && !known[2]) axes[2] = glm::cross(axes[0], axes[1]);
+    return axes;
+}
+
 }  // namespace
+
+DMat4 compose(const LocalTransform& local)
+{
+    const double x = local.rotation.x, y = local.rotation.y, z = local.rotation.z, w = local.rotation.w;
+    const DVec3 c0(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w));
+    const DVec3 c1(2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w));
+    const DVec3 c2(2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y));
+    return DMat4(glm::dvec4(c0 * local.scale.x, 0.0), glm::dvec4(c1 * local.scale.y, 0.0), glm::dvec4(c2 * local.scale.z, 0.0),
+                 glm::dvec4(local.translation, 1.0));
+}
 
 glm::dvec4 slerp(const glm::dvec4& from, glm::dvec4 to, double t)
 {
@@ -116,7 +128,7 @@ Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origi
     Pose pose;
     std::vector<LocalTransform> locals;
     for (const Node& node : asset.nodes) {
-        locals.push_back({node.translation, node.scale, node.rotation});
+        locals.push_back({.translation = node.translation, .scale = node.scale, .rotation = node.rotation});
         pose.weights.push_back(!node.weights.empty() || node.mesh < 0 ? node.weights : asset.meshes[std::size_t(node.mesh)].weights);
     }
     if (animation >= 0)
@@ -124,12 +136,18 @@ Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origi
             applyChannel(channel, time, locals[std::size_t(channel.node)], pose.weights[std::size_t(channel.node)]);
 
     pose.worldFromNode.assign(asset.nodes.size(), DMat4(1.0));
+    pose.turned.assign(asset.nodes.size(), glm::dmat3(1.0));
     for (const int i : asset.parentsFirst) {
         const Node& node = asset.nodes[std::size_t(i)];
         DMat4 local = node.hasMatrix ? node.matrix : compose(locals[std::size_t(i)]);
         if (node.parent < 0 && placement) local = *placement * local;
         if (node.parent < 0) local[3] -= glm::dvec4(origin, 0.0);
         pose.worldFromNode[std::size_t(i)] = node.parent < 0 ? local : pose.worldFromNode[std::size_t(node.parent)] * local;
+
+        const LocalTransform unscaled{.translation = DVec3(0.0), .scale = DVec3(1.0), .rotation = locals[std::size_t(i)].rotation};
+        glm::dmat3 turn = node.hasMatrix ? axesOf(node.matrix) : glm::dmat3(compose(unscaled));
+        if (node.parent < 0 && placement) turn = axesOf(*placement) * turn;
+        pose.turned[std::size_t(i)] = node.parent < 0 ? turn : pose.turned[std::size_t(node.parent)] * turn;
     }
     return pose;
 }

@@ -8,8 +8,16 @@
 /// Node transforms and morph weights of a glTF asset at a moment (glTF 2.0, section 3.11 and appendix C).
 namespace lrsm::gltf {
 
+/// As glTF nodes and instances have it: scaled, then turned, then moved.
+struct LocalTransform {
+    DVec3 translation{0.0}, scale{1.0};
+    glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};  ///< unit quaternion
+};
+DMat4 compose(const LocalTransform& local);
+
 struct Pose {
     std::vector<DMat4> worldFromNode;         ///< one a node
+    std::vector<glm::dmat3> turned;           ///< one a node: the same without places and sizes, for what has a direction alone; orthonormal
     std::vector<std::vector<float>> weights;  ///< morph weights, one list a node; empty where the node has no targets
 };
 

@@ -3,6 +3,7 @@
 #include "core/base/elementary.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
+#include "core/decode/decode.h"
 #include "core/scene/defaults.h"
 #include "core/scene/gltf_document.h"
 #include "core/scene/invisible.h"
@@ -22,6 +23,7 @@ namespace gltf {
 namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 28;  // three split vertices each stay below 2^32
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 27;   // of a texture
 constexpr double kMaxExtent = 1e15;                          // metres; beyond it products of coordinates leave float's range
 
 /// stb decodes 16-bit files to 16 bits; 8 are kept, rounded to nearest.
@@ -47,7 +49,13 @@ bool isTooLarge(const std::vector<unsigned char>& bytes)
     const auto side = [&](std::size_t at) {
         return std::uint64_t(bytes[at]) << 24 | std::uint64_t(bytes[at + 1]) << 16 | std::uint64_t(bytes[at + 2]) << 8 | bytes[at + 3];
     };
-    return side(16) * side(20) > (std::uint64_t(1) << 27);
+    return side(16) * side(20) > std::uint64_t(kMaxPixels);
+}
+
+bool isKtx(const std::vector<unsigned char>& bytes)
+{
+    constexpr unsigned char kKtx[] = {0xab, 'K', 'T', 'X', ' '};
+    return bytes.size() >= std::size(kKtx) && std::equal(std::begin(kKtx), std::end(kKtx), bytes.begin());
 }
 
 Image<Rgba8> decode(const Asset& asset, std::size_t index)
@@ -57,12 +65,22 @@ Image<Rgba8> decode(const Asset& asset, std::size_t index)
     if (!encoded.problem.empty()) throw InputError(encoded.problem);
     if (encoded.bytes.empty() || encoded.bytes.size() > 0x7fffffff) throw InputError(place, "is empty or too large");
     if (isTooLarge(encoded.bytes)) throw InputError(place, "has more than 2^27 pixels");
+    if (const std::optional<WebpSize> size = webpSize(encoded.bytes)) {
+        if (std::int64_t(size->width) * size->height > kMaxPixels) throw InputError(place, "has more than 2^27 pixels");
+        const std::optional<Bytes> rgba = decodeWebp(encoded.bytes);
+        if (!rgba) throw InputError(place, "\"" + encoded.name + "\" cannot be decoded: a damaged WebP file, or an animation");
+        Image<Rgba8> image(size->width, size->height);
+        for (std::size_t i = 0; i < image.texels.size(); ++i)
+            image.texels[i] = {.r = (*rgba)[4 * i], .g = (*rgba)[4 * i + 1], .b = (*rgba)[4 * i + 2], .a = (*rgba)[4 * i + 3]};
+        return image;
+    }
 
     tinygltf::Image decoded;
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, int(index), &error, &warning, 0, 0, encoded.bytes.data(), int(encoded.bytes.size()), nullptr) ||
         decoded.component != 4 || (decoded.bits != 8 && decoded.bits != 16))
-        throw InputError(place, "\"" + encoded.name + "\" cannot be decoded: it is damaged, or neither PNG nor JPEG");
+        throw InputError(place, "\"" + encoded.name + "\" cannot be decoded: it is damaged, or none of PNG, JPEG and WebP" +
+                                    conversionAdvice(isKtx(encoded.bytes) ? "KHR_texture_basisu" : ""));
     return toRgba8(decoded);
 }
 
@@ -128,9 +146,10 @@ void checkSize(const Asset& asset)
     std::size_t triangles = 0, vertices = 0;
     for (const int n : asset.sceneNodes) {
         if (asset.nodes[std::size_t(n)].mesh < 0) continue;
+        const std::size_t instances = std::max<std::size_t>(asset.nodes[std::size_t(n)].instances.size(), 1);
         for (const Primitive& primitive : asset.meshes[std::size_t(asset.nodes[std::size_t(n)].mesh)].primitives) {
-            triangles += primitive.triangles.size();
-            vertices += primitive.positions.size();
+            triangles += instances * primitive.triangles.size();
+            vertices += instances * primitive.positions.size();
         }
         if (std::max(triangles, vertices) > kMaxTriangles)
             throw InputError(asset.file, "the scene has more than " + std::to_string(kMaxTriangles) + " triangles or vertices");
@@ -179,6 +198,15 @@ struct FloatStep {
     double step = 0.0, distance = 0.0;
 };
 
+/// By how much instances enlarge a mesh at most; their places are double.
+double largestInstance(const Node& node)
+{
+    double largest = node.instances.empty() ? 1.0 : 0.0;
+    for (const DMat4& instance : node.instances)
+        for (int c = 0; c < 3; ++c) largest = std::max(largest, std::sqrt(glm::dot(DVec3(instance[c]), DVec3(instance[c]))));
+    return largest;
+}
+
 FloatStep coarsestStep(const Asset& asset, const Pose& pose)
 {
     FloatStep coarsest;
@@ -186,7 +214,8 @@ FloatStep coarsestStep(const Asset& asset, const Pose& pose)
         const Node& node = asset.nodes[std::size_t(n)];
         if (node.mesh < 0 || node.skin >= 0) continue;
         const DMat4& world = pose.worldFromNode[std::size_t(n)];
-        const double scale = std::sqrt(std::max({glm::dot(world[0], world[0]), glm::dot(world[1], world[1]), glm::dot(world[2], world[2])}));
+        const double scale =
+            largestInstance(node) * std::sqrt(std::max({glm::dot(world[0], world[0]), glm::dot(world[1], world[1]), glm::dot(world[2], world[2])}));
         float largest = 0.0f;
         for (const Primitive& primitive : asset.meshes[std::size_t(node.mesh)].primitives)
             for (const Vec3& p : primitive.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

@@ -9,8 +9,9 @@
 /// glTF 2.0 files (.gltf with its buffers and images, .glb) as a world-space Scene at one moment.
 ///
 /// Read: triangles, strips and fans with their vertex streams; metallic-roughness materials with base colour, metallic-roughness and
-/// normal textures; node, skin and morph target animation; cameras; KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization.
-/// What is skipped or replaced is said in Scene::notes.
+/// normal textures (PNG, JPEG, WebP); node, skin and morph target animation; cameras; KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization,
+/// EXT_mesh_gpu_instancing, EXT_meshopt_compression, KHR_draco_mesh_compression; of KHR_materials_pbrSpecularGlossiness the diffuse part.
+/// What is mended (gltf_repair.h), skipped or replaced is said in Scene::notes.
 namespace lrsm {
 
 struct LoadOptions {

@@ -85,7 +85,6 @@ void checkBufferViews(const Document& document)
         const std::uint64_t size = document.buffers[std::size_t(view.buffer)].size();
         if (view.byteOffset > size || view.byteLength > size - view.byteOffset)
             document.fail(at("bufferViews", i), "reaches past the end of buffer " + std::to_string(view.buffer));
-        if (view.byteStride % 4 != 0) document.fail(at("bufferViews", i) + ".byteStride", "must be a multiple of 4");
     }
 }
 

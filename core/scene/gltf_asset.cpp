@@ -13,7 +13,7 @@ void noteExtensions(const Document& document, Asset& asset)
 {
     std::string ignored;
     for (const std::string& name : document.model.extensionsUsed)
-        if (name != "KHR_lights_punctual" && name != "KHR_texture_transform" && name != "KHR_mesh_quantization")
+        if (!isRead(name) && name != "KHR_materials_unlit" && name != "KHR_materials_emissive_strength")  // materials say it by name
             ignored += (ignored.empty() ? "" : ", ") + name;
     if (!ignored.empty()) asset.notes.push_back("extensions ignored: " + ignored);
 }
@@ -26,6 +26,7 @@ Asset readAsset(const std::string& path)
     checkAccessors(document);
     Asset asset;
     asset.file = path;
+    asset.notes = document.notes;
     readMaterials(document, asset);
     readImages(document, asset);
     readMeshes(document, asset);

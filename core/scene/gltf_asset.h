@@ -23,7 +23,8 @@ struct Node {
     int parent = -1;
     std::vector<int> children;
     int mesh = -1, skin = -1, camera = -1, light = -1;
-    std::vector<float> weights;  ///< of morph targets; empty: the mesh's
+    std::vector<float> weights;    ///< of morph targets; empty: the mesh's
+    std::vector<DMat4> instances;  ///< EXT_mesh_gpu_instancing: its mesh once for each, node from instance; empty: once
 };
 
 /// Displacements of one morph target; an absent stream is empty.
@@ -41,7 +42,7 @@ struct Primitive {
     int material = 0;  ///< index into Asset::materials
     std::vector<Vec3> positions, normals;
     std::vector<Vec4> tangents;
-    std::vector<Vec2> uv0, uv1;
+    std::vector<Vec2> uv0, uv1;  ///< the two sets that its material's textures use
     std::vector<Vec4> colors;
     std::vector<Influences> influences;  ///< sets 0 and 1, as far as the file has them
     std::vector<MorphTarget> targets;
@@ -59,6 +60,9 @@ struct Skin {
     std::vector<DMat4> inverseBind;  ///< one a joint
 };
 
+/// Which of the file's sets of texture coordinates stand in for a mesh's first and second; -1: none.
+using UvSets = std::array<int, 2>;
+
 enum class Interpolation { step, linear, cubicSpline };
 enum class Property { translation, rotation, scale, weights };
 
@@ -66,7 +70,7 @@ struct Channel {
     int node = -1;
     Property property = Property::translation;
     Interpolation interpolation = Interpolation::linear;
-    std::vector<float> times;   ///< strictly increasing, at least one
+    std::vector<float> times;   ///< not decreasing, at least one; where two are equal the value jumps
     int width = 3;              ///< floats a value
     std::vector<float> values;  ///< width a time; cubicSpline: in-tangent, value, out-tangent
 };
@@ -97,9 +101,10 @@ struct Asset {
     std::vector<Mesh> meshes;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
-    std::vector<Material> materials;  ///< the last one is glTF's default material
-    std::vector<Texture> textures;    ///< images and mips by openGltf; empty until then
-    std::vector<int> textureImage;    ///< index into `images` for each texture, -1: none
+    std::vector<Material> materials;     ///< the last one is glTF's default material
+    std::vector<UvSets> materialUvSets;  ///< one a material
+    std::vector<Texture> textures;       ///< images and mips by openGltf; empty until then
+    std::vector<int> textureImage;       ///< index into `images` for each texture, -1: none
     std::vector<EncodedImage> images;
     std::vector<LocalLight> lights;
     std::vector<Camera> cameras;

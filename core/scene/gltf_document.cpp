@@ -1,11 +1,14 @@
 #include "core/scene/gltf_document.h"
 
 #include "core/base/file.h"
+#include "core/decode/decode.h"
+#include "core/scene/gltf_compressed.h"
+#include "core/scene/gltf_repair.h"
 #include "core/scene/gltf_schema.h"
+#include "core/scene/gltf_uri.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -15,9 +18,24 @@
 namespace lrsm::gltf {
 namespace {
 
-constexpr auto kUnderstoodExtensions = std::to_array<std::string_view>({"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
-                                                                        // Ignored, with a note where it matters: these do not change what is modelled here.
-                                                                        "KHR_materials_emissive_strength"});
+constexpr auto kReadExtensions =
+    std::to_array<std::string_view>({"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_pbrSpecularGlossiness",
+                                     "EXT_mesh_gpu_instancing", "EXT_texture_webp", "EXT_meshopt_compression", "KHR_draco_mesh_compression"});
+/// A file may require these: without them its shapes and colours are there, if not all that happens on its surfaces.
+constexpr auto kHarmlessExtensions = std::to_array<std::string_view>(
+    {"KHR_materials_unlit", "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_specular", "KHR_materials_ior",
+     "KHR_materials_iridescence", "KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_transmission", "KHR_materials_volume",
+     "KHR_materials_diffuse_transmission", "KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp", "EXT_lights_image_based"});
+
+struct Conversion {
+    std::string_view extension, advice;
+};
+/// What another program makes readable.
+constexpr auto kConversions = std::to_array<Conversion>({
+    {"KHR_texture_basisu", "decompress its KTX2 textures first, for instance with `gltf-transform ktxdecompress IN OUT`"},
+    {"EXT_texture_avif", "convert its textures to PNG, JPEG or WebP first"},
+    {"KHR_meshopt_compression", "write it with EXT_meshopt_compression, or without compression"},
+});
 
 struct Container {
     std::string_view json;
@@ -80,20 +98,34 @@ void checkVersion(const JsonReader& asset)
 
 void checkExtensions(const Document& document)
 {
-    std::string unknown;
-    for (const Json& name : document.json.value("extensionsRequired", Json::array()))
-        if (std::find(kUnderstoodExtensions.begin(), kUnderstoodExtensions.end(), name.get<std::string>()) == kUnderstoodExtensions.end())
-            unknown += (unknown.empty() ? "" : ", ") + name.get<std::string>();
-    if (!unknown.empty()) document.fail("extensionsRequired", "not supported: " + unknown);
+    std::string unknown, advice;
+    for (const Json& json : document.json.value("extensionsRequired", Json::array())) {
+        const std::string name = json.get<std::string>();
+        if (isRead(name) || std::find(kHarmlessExtensions.begin(), kHarmlessExtensions.end(), name) != kHarmlessExtensions.end()) continue;
+        unknown += (unknown.empty() ? "" : ", ") + name;
+        advice += conversionAdvice(name);
+    }
+    if (!unknown.empty()) document.fail("extensionsRequired", "not supported: " + unknown + advice);
 }
 
-/// tinygltf does not see extensions and extras (newer ones interpret more of them than the schema checks), buffers and images.
-tinygltf::Model parseModel(const Document& document, std::string_view json)
+/// tinygltf does not see extensions and extras (newer ones interpret more of them than the schema checks), buffers and images, and strides, of which it
+/// refuses some that can be read.
+Json seenByTinygltf(const Json& value, bool isRoot)
 {
-    const auto isRead = [](int depth, Json::parse_event_t event, const Json& key) {
-        return event != Json::parse_event_t::key || !(key == "extensions" || key == "extras" || (depth == 1 && (key == "buffers" || key == "images")));
-    };
-    const std::string text = Json::parse(json, isRead).dump();
+    if (!value.is_structured()) return value;
+    Json copy = value.is_array() ? Json::array() : Json::object();
+    if (value.is_array())
+        for (const Json& item : value) copy.push_back(seenByTinygltf(item, false));
+    else
+        for (const auto& [key, member] : value.items())
+            if (key != "extensions" && key != "extras" && key != "byteStride" && !(isRoot && (key == "buffers" || key == "images")))
+                copy[key] = seenByTinygltf(member, false);
+    return copy;
+}
+
+tinygltf::Model parseModel(const Document& document)
+{
+    const std::string text = seenByTinygltf(document.json, true).dump();
     if (text.size() > 0x7fffffff) document.fail("JSON", "longer than 2 GiB");
 
     tinygltf::Model model;
@@ -102,6 +134,8 @@ tinygltf::Model parseModel(const Document& document, std::string_view json)
         std::replace(error.begin(), error.end(), '\n', ' ');
         document.fail("JSON", error);
     }
+    for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
+        model.bufferViews[i].byteStride = document.json["bufferViews"][i].value("byteStride", std::size_t(0));
     return model;
 }
 
@@ -113,6 +147,9 @@ std::vector<std::vector<unsigned char>> readBuffers(const Document& document, co
         const std::string path = at("buffers", i);
         if (list[i].contains("uri")) {
             buffers.push_back(readUri(document, list[i]["uri"].get<std::string>(), path + ".uri"));
+        } else if (isFallbackBuffer(list[i])) {
+            buffers.emplace_back();
+            continue;
         } else {
             if (i != 0 || !container.binary) document.fail(path + ".uri", "is missing, and there is no binary chunk for it");
             buffers.emplace_back(container.binary->begin(), container.binary->end());
@@ -127,10 +164,10 @@ std::vector<std::vector<unsigned char>> readBuffers(const Document& document, co
 
 std::vector<unsigned char> decodeDataUri(const Document& document, const std::string& uri, const std::string& jsonPath)
 {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64")) document.fail(jsonPath, "a data URI must be base64");
-    std::string text = uri.substr(comma + 1);
-    for (int i = 0; i < 2 && text.ends_with('='); ++i) text.pop_back();
+    const std::optional<std::string> plain = plainDataUri(uri);
+    if (!plain) document.fail(jsonPath, uri.find("base64,") == std::string::npos ? "a data URI must be base64" : "is no valid base64");
+    std::string text = plain->substr(plain->find(',') + 1);
+    while (text.ends_with('=')) text.pop_back();
 
     // tinygltf knows some media types only, stops without a word at what is no digit, and counts in int.
     std::vector<unsigned char> bytes;
@@ -138,19 +175,6 @@ std::vector<unsigned char> decodeDataUri(const Document& document, const std::st
     if (text.size() < 0x7ffffff0) tinygltf::DecodeDataURI(&bytes, mediaType, "data:application/octet-stream;base64," + text, 0, false);
     if (text.size() % 4 == 1 || bytes.size() != text.size() * 3 / 4) document.fail(jsonPath, "is no valid base64");
     return bytes;
-}
-
-std::string percentDecode(const std::string& uri)
-{
-    std::string text;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        unsigned char byte = 0;
-        const char* digits = uri.data() + i + 1;
-        const bool escaped = uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
-        text += escaped ? char(byte) : uri[i];
-        if (escaped) i += 2;
-    }
-    return text;
 }
 
 }  // namespace
@@ -169,15 +193,28 @@ std::string countOf(std::size_t count, const std::string& noun)
 
 std::vector<unsigned char> readUri(const Document& document, const std::string& uri, const std::string& jsonPath)
 {
-    if (uri.starts_with("data:")) return decodeDataUri(document, uri, jsonPath);
+    if (isDataUri(uri)) return decodeDataUri(document, uri, jsonPath);
     if (uri.find("://") != std::string::npos) document.fail(jsonPath, "only data URIs and files are read");
-    const std::string name = percentDecode(uri);
+    const std::string name = decodeUri(uri);
     if (name.empty() || name.find('\0') != std::string::npos) document.fail(jsonPath, "is no file name");
     try {
         return readFile((std::filesystem::path(document.file).parent_path() / name).string());
     } catch (const InputError& error) {
         document.fail(jsonPath, error.what());
     }
+}
+
+std::string conversionAdvice(std::string_view extension)
+{
+    for (const Conversion& conversion : kConversions)
+        if (conversion.extension == extension) return "; " + std::string(conversion.advice);
+    return "";
+}
+
+bool isRead(std::string_view extension)
+{
+    const bool compressed = extension == "EXT_meshopt_compression" || extension == "KHR_draco_mesh_compression" || extension == "EXT_texture_webp";
+    return (hasDecoders() || !compressed) && std::find(kReadExtensions.begin(), kReadExtensions.end(), extension) != kReadExtensions.end();
 }
 
 Document readDocument(const std::string& path)
@@ -187,12 +224,14 @@ Document readDocument(const std::string& path)
     document.file = path;
     const Container container = splitFile(document, file);
     document.json = parseJson(container.json, container.json.data() == reinterpret_cast<const char*>(file.data()) ? path : path + ": JSON chunk");
+    repairJson(document.json, path, document.notes);
     const JsonReader root(document.json, path);
     checkSchema(root);
     checkVersion(root["asset"]);
     checkExtensions(document);
     document.buffers = readBuffers(document, container);
-    document.model = parseModel(document, container.json);
+    if (hasDecoders()) decompress(document);
+    document.model = parseModel(document);
     return document;
 }
 

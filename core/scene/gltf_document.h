@@ -20,9 +20,10 @@ using Json = nlohmann::ordered_json;
 
 struct Document {
     std::string file;       ///< as the user gave it
-    Json json;              ///< obeys the schema (checkSchema)
+    Json json;              ///< mended (gltf_repair.h), decompressed (gltf_compressed.h), and obeys the schema (checkSchema)
     tinygltf::Model model;  ///< the same, typed; without buffers, images and extensions, which are read from `json`
     std::vector<std::vector<unsigned char>> buffers;
+    std::vector<std::string> notes;  ///< what was mended on the way
 
     [[noreturn]] void fail(const std::string& jsonPath, const std::string& why) const { throw InputError(file + ": " + jsonPath, why); }
 };
@@ -32,6 +33,12 @@ std::string at(const std::string& path, std::size_t index);
 
 /// "1 primitive", "3 primitives"
 std::string countOf(std::size_t count, const std::string& noun);
+
+/// Is what an extension says read here, or does it not matter to what is modelled?
+bool isRead(std::string_view extension);
+
+/// "; what to do" for an extension that another program can take out of a file; "" for others.
+std::string conversionAdvice(std::string_view extension);
 
 /// Container, JSON, schema, extensions, buffers; what the accessors and nodes refer to is checked where they are read.
 Document readDocument(const std::string& path);

@@ -8,11 +8,19 @@ constexpr float kMaxOuterConeAngle = 1.5533430f;  // 89 degrees
 
 void readCone(const Document& document, const Json& json, const std::string& path, Light& light, Asset& asset)
 {
+    constexpr float kRounding = 1e-3f;  // of the angle: what conversions between degrees, radians and float leave
     const auto spot = json.find("spot");
-    if (spot == json.end()) document.fail(path + ".spot", "is missing");
+    if (spot == json.end()) {
+        asset.notes.push_back("light \"" + light.name + "\": without cone angles, so the default ones are taken");
+        return;
+    }
     light.innerConeAngle = spot->value("innerConeAngle", 0.0f);
     light.outerConeAngle = spot->value("outerConeAngle", 0.78539816f);
-    if (!(light.innerConeAngle < light.outerConeAngle)) document.fail(path + ".spot", "innerConeAngle must be smaller than outerConeAngle");
+    if (light.innerConeAngle > light.outerConeAngle * (1.0f + kRounding)) document.fail(path + ".spot", "innerConeAngle must be smaller than outerConeAngle");
+    if (light.innerConeAngle >= light.outerConeAngle) {
+        asset.notes.push_back("light \"" + light.name + "\": inner cone angle as large as the outer: a hard edge");
+        light.innerConeAngle = light.outerConeAngle;
+    }
     if (light.outerConeAngle >= kMaxOuterConeAngle) {
         asset.notes.push_back("light \"" + light.name + "\": outer cone angle reduced to 89 degrees");
         light.outerConeAngle = kMaxOuterConeAngle;

@@ -3,6 +3,9 @@
 #include "core/base/elementary.h"
 #include "core/scene/gltf_accessor.h"
 
+#include <algorithm>
+#include <tuple>
+
 namespace lrsm::gltf {
 namespace {
 
@@ -31,7 +34,7 @@ void readTransform(const Json& transform, TextureUse& use)
 }
 
 /// The texture reference `key` of a material object.
-TextureUse textureUse(const Document& document, const Json& owner, const char* key, const std::string& path)
+TextureUse textureUse(const Json& owner, const char* key)
 {
     TextureUse use;
     const auto info = owner.find(key);
@@ -40,15 +43,57 @@ TextureUse textureUse(const Document& document, const Json& owner, const char* k
     use.uvSet = info->value("texCoord", 0);
     if (const auto extensions = info->find("extensions"); extensions != info->end())
         if (const auto transform = extensions->find("KHR_texture_transform"); transform != extensions->end()) readTransform(*transform, use);
-    if (use.uvSet > 1) document.fail(path + "." + key + ".texCoord", "only texture coordinate sets 0 and 1 are supported");
     return use;
+}
+
+constexpr std::size_t kUvStreams = std::tuple_size_v<UvSets>;
+
+/// Passes know two streams of texture coordinates: the file's sets that this material uses are numbered anew where there are others than 0 and 1.
+UvSets assignUvSets(Material& material, std::vector<std::string>& notes)
+{
+    const std::array<TextureUse*, 3> uses = {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture};
+    if (std::all_of(uses.begin(), uses.end(), [](const TextureUse* use) { return !*use || use->uvSet < int(kUvStreams); })) return {0, 1};
+    UvSets sets;
+    sets.fill(-1);
+    std::size_t known = 0;
+    for (TextureUse* use : uses) {
+        if (!*use) continue;
+        const auto end = sets.begin() + std::ptrdiff_t(known), found = std::find(sets.begin(), end, use->uvSet);
+        if (found == end && known == kUvStreams) {
+            notes.push_back("material \"" + material.name + "\": a texture ignored, its coordinates are the third set that the material uses");
+            *use = TextureUse();
+            continue;
+        }
+        if (found == end) sets[known++] = use->uvSet;
+        use->uvSet = int(found - sets.begin());
+    }
+    return sets;
+}
+
+/// KHR_materials_pbrSpecularGlossiness: of two models the part that they have in common.
+void readSpecularGlossiness(const Json& json, Material& material, std::vector<std::string>& notes)
+{
+    const std::vector<float> diffuse = json.value("diffuseFactor", std::vector<float>(4, 1.0f));
+    material.baseColor = Vec4(diffuse[0], diffuse[1], diffuse[2], diffuse[3]);
+    material.baseColorTexture = textureUse(json, "diffuseTexture");
+    material.metallic = 0.0f;
+    material.roughness = 1.0f;
+    notes.push_back("material \"" + material.name + "\": of specular-glossiness the diffuse part is taken as albedo, the specular part left out");
+}
+
+/// The extension's object in `owner`; nullptr where there is none.
+const Json* extensionIn(const Json& owner, const char* name)
+{
+    const auto extensions = owner.find("extensions");
+    if (extensions == owner.end() || !extensions->is_object()) return nullptr;
+    const auto found = extensions->find(name);
+    return found == extensions->end() || !found->is_object() ? nullptr : &*found;
 }
 
 Material readMaterial(const Document& document, std::size_t i, Asset& asset)
 {
     const Json& json = document.json["materials"][i];
     const tinygltf::Material& source = document.model.materials[i];
-    const std::string path = at("materials", i);
 
     Material material;
     material.name = source.name.empty() ? "material " + std::to_string(i) : source.name;
@@ -64,26 +109,34 @@ Material readMaterial(const Document& document, std::size_t i, Asset& asset)
         material.alphaCutoff = 0.5f;
         asset.notes.push_back("material \"" + material.name + "\": alpha blending replaced by a mask at 0.5");
     }
+    if (const std::string mode = source.alphaMode; !mode.empty() && mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+        asset.notes.push_back("material \"" + material.name + "\": unknown alphaMode \"" + mode + "\" taken as OPAQUE");
     if (const auto block = json.find("pbrMetallicRoughness"); block != json.end()) {
-        const std::string inner = path + ".pbrMetallicRoughness";
-        material.baseColorTexture = textureUse(document, *block, "baseColorTexture", inner);
-        material.metallicRoughnessTexture = textureUse(document, *block, "metallicRoughnessTexture", inner);
+        material.baseColorTexture = textureUse(*block, "baseColorTexture");
+        material.metallicRoughnessTexture = textureUse(*block, "metallicRoughnessTexture");
     }
-    material.normalTexture = textureUse(document, json, "normalTexture", path);
+    if (const Json* block = extensionIn(json, "KHR_materials_pbrSpecularGlossiness")) {
+        material.metallicRoughnessTexture = {};
+        readSpecularGlossiness(*block, material, asset.notes);
+    }
+    material.normalTexture = textureUse(json, "normalTexture");
     material.normalScale = float(source.normalTexture.scale);
     return material;
 }
 
 void noteIgnored(const Document& document, Asset& asset)
 {
-    std::size_t occlusion = 0, emissive = 0;
-    for (const Json& material : document.json.value("materials", Json::array())) {
-        occlusion += material.contains("occlusionTexture");
-        const std::vector<double> factor = material.value("emissiveFactor", std::vector<double>{0.0, 0.0, 0.0});
-        emissive += factor[0] > 0.0 || factor[1] > 0.0 || factor[2] > 0.0;
+    std::size_t occlusion = 0;
+    const Json materials = document.json.value("materials", Json::array());
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        occlusion += materials[i].contains("occlusionTexture");
+        const std::string material = "material \"" + asset.materials[i].name + "\"";
+        const std::vector<double> factor = materials[i].value("emissiveFactor", std::vector<double>{0.0, 0.0, 0.0});
+        if (factor[0] > 0.0 || factor[1] > 0.0 || factor[2] > 0.0)
+            asset.notes.push_back("emissive " + material + " lights nothing: only the lights of KHR_lights_punctual and of view files emit");
+        if (extensionIn(materials[i], "KHR_materials_unlit")) asset.notes.push_back("unlit " + material + " is lit like any other");
     }
     if (occlusion > 0) asset.notes.push_back(countOf(occlusion, "occlusion texture") + " ignored");
-    if (emissive > 0) asset.notes.push_back(countOf(emissive, "emissive material") + " ignored: only the lights of KHR_lights_punctual emit");
 }
 
 }  // namespace
@@ -94,6 +147,7 @@ void readMaterials(const Document& document, Asset& asset)
     Material fallback;
     fallback.name = "glTF default";
     asset.materials.push_back(fallback);
+    for (Material& material : asset.materials) asset.materialUvSets.push_back(assignUvSets(material, asset.notes));
     noteIgnored(document, asset);
 
     for (std::size_t i = 0; i < document.model.textures.size(); ++i) {
@@ -107,13 +161,16 @@ void readMaterials(const Document& document, Asset& asset)
             texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         }
         asset.textures.push_back(std::move(texture));
-        asset.textureImage.push_back(source.source);
+        const Json* webp = extensionIn(document.json["textures"][i], "EXT_texture_webp");
+        asset.textureImage.push_back(webp && isRead("EXT_texture_webp") ? (*webp)["source"].get<int>() : source.source);
     }
     // A texture that only an unknown extension could fill (a compressed format, say) is left out, and the factor stands alone.
     for (Material& material : asset.materials) {
         for (TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture}) {
             if (!*use || asset.textureImage[std::size_t(use->texture)] >= 0) continue;
-            asset.notes.push_back("material \"" + material.name + "\": a texture without a readable source ignored");
+            const Json& texture = document.json["textures"][std::size_t(use->texture)];
+            const std::string extension = texture.contains("extensions") && !texture["extensions"].empty() ? texture["extensions"].begin().key() : "";
+            asset.notes.push_back("material \"" + material.name + "\": a texture without a readable source ignored" + conversionAdvice(extension));
             use->texture = -1;
         }
     }

@@ -102,19 +102,24 @@ std::vector<std::array<std::uint32_t, 3>> assembleTriangles(const std::vector<st
     return triangles;
 }
 
-Primitive readPrimitive(const Document& document, const tinygltf::Primitive& source, const std::string& path, std::size_t defaultMaterial, bool quantized)
+Primitive readPrimitive(const Document& document, const tinygltf::Primitive& source, const std::string& path, const std::vector<UvSets>& materialUvSets,
+                        bool quantized)
 {
     const std::size_t vertices = document.model.accessors[std::size_t(source.attributes.at("POSITION"))].count;
     const AttributeReader reader(document, source.attributes, path + ".attributes", vertices);
 
     Primitive primitive;
-    primitive.material = source.material >= 0 ? source.material : int(defaultMaterial);
+    primitive.material = source.material >= 0 ? source.material : int(materialUvSets.size() - 1);
     primitive.positions = reader.vectors<Vec3>("POSITION", quantized ? kQuantizedPosition : kFloat3);
     primitive.normals = reader.vectors<Vec3>("NORMAL", quantized ? kQuantizedNormal : kFloat3);
     // glTF: without normals the tangents are to be ignored too.
     if (!primitive.normals.empty()) primitive.tangents = reader.vectors<Vec4>("TANGENT", quantized ? kQuantizedTangent : "VEC4 f");
-    primitive.uv0 = reader.vectors<Vec2>("TEXCOORD_0", quantized ? kQuantizedUv : kUv);
-    primitive.uv1 = reader.vectors<Vec2>("TEXCOORD_1", quantized ? kQuantizedUv : kUv);
+    const UvSets& sets = materialUvSets[std::size_t(primitive.material)];
+    const auto uv = [&](int set) {
+        return set < 0 ? std::vector<Vec2>{} : reader.vectors<Vec2>("TEXCOORD_" + std::to_string(set), quantized ? kQuantizedUv : kUv);
+    };
+    primitive.uv0 = uv(sets[0]);
+    primitive.uv1 = uv(sets[1]);
     primitive.colors = reader.colors();
     for (int set = 0; set < 2; ++set)
         if (std::optional<Influences> influences = reader.influences(set)) primitive.influences.push_back(std::move(*influences));
@@ -148,7 +153,7 @@ void readMeshes(const Document& document, Asset& asset)
             notTriangles += !triangles;
             withoutPositions += triangles && !positions;
             if (triangles && positions)
-                mesh.primitives.push_back(readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materials.size() - 1, quantized));
+                mesh.primitives.push_back(readPrimitive(document, primitive, at(at("meshes", m) + ".primitives", p), asset.materialUvSets, quantized));
         }
         asset.meshes.push_back(std::move(mesh));
     }

@@ -1,8 +1,10 @@
 #include "core/scene/gltf_nodes.h"
 
 #include "core/base/elementary.h"
+#include "core/scene/animate.h"
 #include "core/scene/gltf_accessor.h"
 
+#include <numeric>
 #include <optional>
 
 namespace lrsm::gltf {
@@ -21,6 +23,24 @@ Interpolation interpolationOf(const Document& document, const std::string& name,
     if (name == "STEP") return Interpolation::step;
     if (name == "CUBICSPLINE") return Interpolation::cubicSpline;
     document.fail(path, "must be STEP, LINEAR or CUBICSPLINE");
+}
+
+/// Keyframes in the order of their times; those of one time stay in the file's order. False where they were so already.
+bool sortKeyframes(Channel& channel)
+{
+    if (std::is_sorted(channel.times.begin(), channel.times.end())) return false;
+    std::vector<std::size_t> order(channel.times.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return channel.times[a] < channel.times[b]; });
+    const std::size_t width = channel.values.size() / order.size();
+    std::vector<float> times, values;
+    for (const std::size_t k : order) {
+        times.push_back(channel.times[k]);
+        values.insert(values.end(), channel.values.begin() + std::ptrdiff_t(k * width), channel.values.begin() + std::ptrdiff_t((k + 1) * width));
+    }
+    channel.times = std::move(times);
+    channel.values = std::move(values);
+    return true;
 }
 
 /// Floats a keyframe holds: 3, 4, or one for each morph target of the node's mesh.
@@ -52,10 +72,6 @@ Channel readChannel(const Document& document, const tinygltf::Animation& animati
 
     requireFormat(document, sampler.input, "SCALAR f", samplerPath + ".input");
     channel.times = readFloats(document, sampler.input);
-    for (std::size_t i = 1; i < channel.times.size(); ++i)
-        if (!(channel.times[i] > channel.times[i - 1]))
-            document.fail(samplerPath + ".input", "times must increase, element " + std::to_string(i) + " does not");
-
     requireFormat(document, sampler.output,
                   channel.property == Property::rotation  ? "VEC4 f ns8 nu8 ns16 nu16"
                   : channel.property == Property::weights ? "SCALAR f ns8 nu8 ns16 nu16"
@@ -66,6 +82,38 @@ Channel readChannel(const Document& document, const tinygltf::Animation& animati
     if (channel.values.size() != expected)
         document.fail(samplerPath + ".output", "holds " + std::to_string(channel.values.size()) + " numbers, the keyframes need " + std::to_string(expected));
     return channel;
+}
+
+/// EXT_mesh_gpu_instancing: node from instance, translation * rotation * scale.
+std::vector<DMat4> readInstances(const Document& document, const Json& attributes, const std::string& path)
+{
+    const auto stream = [&](const char* name, std::string_view allowed) {
+        const auto found = attributes.find(name);
+        if (found == attributes.end()) return std::vector<float>{};
+        requireFormat(document, found->get<int>(), allowed, path + "." + name);
+        return readFloats(document, found->get<int>());
+    };
+    const std::vector<float> translations = stream("TRANSLATION", "VEC3 f"), rotations = stream("ROTATION", "VEC4 f ns8 ns16"),
+                             scales = stream("SCALE", "VEC3 f");
+    const std::size_t count = std::max({translations.size() / 3, rotations.size() / 4, scales.size() / 3});
+    const auto fits = [&](const std::vector<float>& values, std::size_t width) { return values.empty() || values.size() == width * count; };
+    if (count == 0) document.fail(path, "has none of TRANSLATION, ROTATION and SCALE");
+    if (!fits(translations, 3) || !fits(rotations, 4) || !fits(scales, 3)) document.fail(path, "the attributes differ in length");
+
+    std::vector<DMat4> instances;
+    for (std::size_t i = 0; i < count; ++i) {
+        LocalTransform local;
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (!translations.empty()) local.translation[int(c)] = double(translations[3 * i + c]);
+            if (!scales.empty()) local.scale[int(c)] = double(scales[3 * i + c]);
+        }
+        for (std::size_t c = 0; c < 4 && !rotations.empty(); ++c) local.rotation[int(c)] = double(rotations[4 * i + c]);
+        const double length = std::sqrt(glm::dot(local.rotation, local.rotation));
+        if (!(length > 1e-12)) document.fail(path + ".ROTATION", "element " + std::to_string(i) + " is no rotation");
+        local.rotation /= length;
+        instances.push_back(compose(local));
+    }
+    return instances;
 }
 
 DMat4 matrixOf(const std::vector<double>& values)
@@ -98,8 +146,12 @@ Node readNode(const Document& document, std::size_t i)
         node.rotation /= length;
     }
     const Json& json = document.json["nodes"][i];
-    if (const auto extensions = json.find("extensions"); extensions != json.end() && extensions->contains("KHR_lights_punctual"))
-        node.light = (*extensions)["KHR_lights_punctual"]["light"].get<int>();
+    const auto extensions = json.find("extensions");
+    if (extensions == json.end()) return node;
+    if (extensions->contains("KHR_lights_punctual")) node.light = (*extensions)["KHR_lights_punctual"]["light"].get<int>();
+    if (extensions->contains("EXT_mesh_gpu_instancing") && node.mesh >= 0)
+        node.instances =
+            readInstances(document, (*extensions)["EXT_mesh_gpu_instancing"]["attributes"], at("nodes", i) + ".extensions.EXT_mesh_gpu_instancing.attributes");
     return node;
 }
 
@@ -188,20 +240,23 @@ void readSkins(const Document& document, Asset& asset)
 
 void readAnimations(const Document& document, Asset& asset)
 {
-    std::size_t ignored = 0;
+    std::size_t ignored = 0, sorted = 0;
     for (std::size_t a = 0; a < document.model.animations.size(); ++a) {
         const tinygltf::Animation& source = document.model.animations[a];
         const std::string path = at("animations", a);
         Animation animation{source.name.empty() ? "animation " + std::to_string(a) : source.name, {}};
         for (std::size_t c = 0; c < source.channels.size(); ++c) {
             const std::optional<Property> property = propertyNamed(source.channels[c].target_path);
-            if (property && source.channels[c].target_node >= 0)
-                animation.channels.push_back(readChannel(document, source, source.channels[c], *property, path, at(path + ".channels", c)));
-            else
+            if (!property || source.channels[c].target_node < 0) {
                 ++ignored;
+                continue;
+            }
+            animation.channels.push_back(readChannel(document, source, source.channels[c], *property, path, at(path + ".channels", c)));
+            sorted += sortKeyframes(animation.channels.back());
         }
         asset.animations.push_back(std::move(animation));
     }
+    if (sorted > 0) asset.notes.push_back(countOf(sorted, "animation channel") + " with keyframes out of order: sorted by their times");
     if (ignored > 0) asset.notes.push_back(countOf(ignored, "animation channel") + " without a node or of unknown path ignored");
 }
 

@@ -44,7 +44,14 @@ constexpr auto kRules = std::to_array<Rule>({
     {"bufferViews.*.buffer!", Kind::index, "buffers"},
     {"bufferViews.*.byteOffset", Kind::integer, {0, kMaxInteger}},
     {"bufferViews.*.byteLength!", Kind::integer, {1, kMaxInteger}},
-    {"bufferViews.*.byteStride", Kind::integer, {4, 252}},
+    {"bufferViews.*.byteStride", Kind::integer, {1, 2147483647.0}},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.buffer!", Kind::index, "buffers"},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.byteOffset", Kind::integer, {0, kMaxInteger}},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.byteLength!", Kind::integer, {1, kMaxInteger}},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.byteStride!", Kind::integer, {1, 256}},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.count!", Kind::integer, {1, 4294967295.0}},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.mode!", Kind::oneOf, "ATTRIBUTES TRIANGLES INDICES"},
+    {"bufferViews.*.extensions.EXT_meshopt_compression.filter", Kind::oneOf, "NONE OCTAHEDRAL QUATERNION EXPONENTIAL"},
 
     {"accessors.*.bufferView", Kind::index, "bufferViews"},
     {"accessors.*.byteOffset", Kind::integer, {0, kMaxInteger}},
@@ -68,6 +75,9 @@ constexpr auto kRules = std::to_array<Rule>({
     {"meshes.*.primitives.*.material", Kind::index, "materials"},
     {"meshes.*.primitives.*.mode", Kind::integer, {0, 6}},
     {"meshes.*.primitives.*.targets.*.%", Kind::index, "accessors"},
+    {"meshes.*.primitives.*.extensions.KHR_draco_mesh_compression.bufferView!", Kind::index, "bufferViews"},
+    {"meshes.*.primitives.*.extensions.KHR_draco_mesh_compression.attributes!", Kind::object},
+    {"meshes.*.primitives.*.extensions.KHR_draco_mesh_compression.attributes.%", Kind::integer, {0, 2147483647.0}},
     {"meshes.*.weights", Kind::numbers},
 
     {"nodes.*.children.*", Kind::index, "nodes"},
@@ -80,6 +90,8 @@ constexpr auto kRules = std::to_array<Rule>({
     {"nodes.*.scale", Kind::numbers, "3"},
     {"nodes.*.weights", Kind::numbers},
     {"nodes.*.extensions.KHR_lights_punctual.light!", Kind::index, "extensions/KHR_lights_punctual/lights"},
+    {"nodes.*.extensions.EXT_mesh_gpu_instancing.attributes!", Kind::object},
+    {"nodes.*.extensions.EXT_mesh_gpu_instancing.attributes.%", Kind::index, "accessors"},
     {"scenes.*.nodes.*", Kind::index, "nodes"},
     {"scene", Kind::index, "scenes"},
 
@@ -109,6 +121,7 @@ constexpr auto kRules = std::to_array<Rule>({
     {"images.*.uri", Kind::string},
     {"images.*.bufferView", Kind::index, "bufferViews"},
     {"textures.*.source", Kind::index, "images"},
+    {"textures.*.extensions.EXT_texture_webp.source!", Kind::index, "images"},
     {"textures.*.sampler", Kind::index, "samplers"},
     {"samplers.*.magFilter", Kind::integer, {-kMaxInteger, kMaxInteger}},
     {"samplers.*.minFilter", Kind::integer, {-kMaxInteger, kMaxInteger}},
@@ -118,6 +131,7 @@ constexpr auto kRules = std::to_array<Rule>({
     {"materials.*.pbrMetallicRoughness.baseColorFactor", Kind::numbers, {"4", 0, 1}},
     {"materials.*.pbrMetallicRoughness.metallicFactor", Kind::number, {0, 1}},
     {"materials.*.pbrMetallicRoughness.roughnessFactor", Kind::number, {0, 1}},
+    {"materials.*.extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor", Kind::numbers, {"4", 0, 1}},
     {"materials.*.normalTexture.scale", Kind::number, {-1e6, 1e6}},
     {"materials.*.emissiveFactor", Kind::numbers, "3"},
     {"materials.*.alphaMode", Kind::string},
@@ -130,7 +144,7 @@ constexpr auto kRules = std::to_array<Rule>({
     {"extensions.KHR_lights_punctual.lights.*.color", Kind::numbers, {"3", 0, 1e6}},
     {"extensions.KHR_lights_punctual.lights.*.intensity", Kind::number, {0, 1e12}},
     {"extensions.KHR_lights_punctual.lights.*.range", Kind::number, {1e-12, 1e30}},
-    {"extensions.KHR_lights_punctual.lights.*.spot.innerConeAngle", Kind::number, {0, kHalfPi}},
+    {"extensions.KHR_lights_punctual.lights.*.spot.innerConeAngle", Kind::number, {0, kHalfPi + 1e-6}},
     {"extensions.KHR_lights_punctual.lights.*.spot.outerConeAngle", Kind::number, {1e-4, kHalfPi + 1e-6}},
 });
 
@@ -138,6 +152,7 @@ constexpr auto kRules = std::to_array<Rule>({
 constexpr auto kTextureInfos = std::to_array<std::string_view>({
     "materials.*.pbrMetallicRoughness.baseColorTexture",
     "materials.*.pbrMetallicRoughness.metallicRoughnessTexture",
+    "materials.*.extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
     "materials.*.normalTexture",
     "materials.*.occlusionTexture",
     "materials.*.emissiveTexture",

@@ -32,6 +32,8 @@ std::string lowerCaseExtension(const std::string& path)
 void openPlain(SceneSource& source, const std::string& scene, const std::string& place)
 {
     source.builtin = makeBuiltinScene(scene);
+    if (source.builtin && source.options.animation > 0)
+        throw InputError("animation " + std::to_string(source.options.animation), "the built-in scene " + scene + " has none");
     if (source.builtin) return;
     std::error_code error;
     if (scene.empty() || !std::filesystem::exists(scene, error)) failUnknown(place);

@@ -4,6 +4,7 @@
 #include "core/scene/light.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace lrsm::gltf {
@@ -196,18 +197,26 @@ struct Placement {
     Vec3 position, forward, up;
 };
 
-Placement placementOf(const Node& node, const DMat4& world)
+///
+/// Of sizes lights and cameras take nothing (KHR_lights_punctual): where a scale of 0 leaves no axes, those of `turned` hold.
+Placement placementOf(const Node& node, const DMat4& world, const DMat3& turned, std::vector<std::string>& notes)
 {
-    const DVec3 forward = unitOrZero(-DVec3(world[2]));
-    const DVec3 y = unitOrZero(DVec3(world[1]));
-    const DVec3 up = unitOrZero(y - forward * glm::dot(y, forward));
+    const auto axes = [](const DVec3& z, const DVec3& y) {
+        const DVec3 forward = unitOrZero(-z), upright = unitOrZero(y);
+        return std::pair(forward, unitOrZero(upright - forward * glm::dot(upright, forward)));
+    };
+    auto [forward, up] = axes(DVec3(world[2]), DVec3(world[1]));
+    if (forward == DVec3(0.0) || up == DVec3(0.0)) {
+        std::tie(forward, up) = axes(turned[2], turned[1]);
+        notes.push_back("node \"" + node.name + "\": a scale of 0 leaves its light or camera no direction: that of the rotations is taken");
+    }
     const Placement placement{Vec3(DVec3(world[3])), Vec3(forward), Vec3(up)};
     if (forward == DVec3(0.0) || up == DVec3(0.0) || !isFinite(placement.position))
         throw InputError("node \"" + node.name + "\"", "its transform gives its light or camera no direction");
     return placement;
 }
 
-void addLight(const LocalLight& local, const Node& node, const DMat4& world, Scene& scene)
+void addLight(const LocalLight& local, const Node& node, const DMat4& world, const DMat3& turned, Scene& scene)
 {
     if (local.point) {
         const Vec3 position{DVec3(world[3])};
@@ -216,7 +225,7 @@ void addLight(const LocalLight& local, const Node& node, const DMat4& world, Sce
         scene.notes.push_back("point light \"" + local.light.name + "\" split into six faces of a cube");
         return;
     }
-    const Placement placement = placementOf(node, world);
+    const Placement placement = placementOf(node, world, turned, scene.notes);
     Light light = local.light;
     light.position = placement.position;
     light.direction = placement.forward;
@@ -224,9 +233,9 @@ void addLight(const LocalLight& local, const Node& node, const DMat4& world, Sce
     scene.lights.push_back(std::move(light));
 }
 
-void addCamera(const Camera& local, const Node& node, const DMat4& world, Scene& scene)
+void addCamera(const Camera& local, const Node& node, const DMat4& world, const DMat3& turned, Scene& scene)
 {
-    const Placement placement = placementOf(node, world);
+    const Placement placement = placementOf(node, world, turned, scene.notes);
     Camera camera = local;
     if (camera.name.empty()) camera.name = node.name;
     camera.position = placement.position;
@@ -255,10 +264,12 @@ Scene poseAsset(const Asset& asset, const Pose& pose)
             }
             const Mesh& mesh = asset.meshes[std::size_t(node.mesh)];
             for (const Primitive& primitive : mesh.primitives)
-                if (!primitive.triangles.empty()) scene.meshes.push_back(worldMesh(primitive, mesh, node, world, pose.weights[std::size_t(n)], skinning));
+                for (std::size_t i = 0; i < std::max<std::size_t>(node.instances.size(), 1) && !primitive.triangles.empty(); ++i)
+                    scene.meshes.push_back(
+                        worldMesh(primitive, mesh, node, node.instances.empty() ? world : world * node.instances[i], pose.weights[std::size_t(n)], skinning));
         }
-        if (node.light >= 0) addLight(asset.lights[std::size_t(node.light)], node, world, scene);
-        if (node.camera >= 0) addCamera(asset.cameras[std::size_t(node.camera)], node, world, scene);
+        if (node.light >= 0) addLight(asset.lights[std::size_t(node.light)], node, world, pose.turned[std::size_t(n)], scene);
+        if (node.camera >= 0) addCamera(asset.cameras[std::size_t(node.camera)], node, world, pose.turned[std::size_t(n)], scene);
     }
     for (const lrsm::Mesh& mesh : scene.meshes)
         for (const auto& triangle : mesh.triangles)

@@ -93,7 +93,7 @@ void addLight(const JsonReader& in, const glm::dvec3& origin, View& view)
         light.range = numberOr(kInfinity, in, "range", 1e-12, 1e30);
         light.innerConeAngle = float(double(numberOr(0.0f, in, "innerConeAngleDegrees", 0.0, 89.0)) * kDegree);
         light.outerConeAngle = float(double(numberOr(45.0f, in, "outerConeAngleDegrees", 0.01, 89.0)) * kDegree);
-        if (!(light.innerConeAngle < light.outerConeAngle)) in.fail("innerConeAngleDegrees", "must be smaller than outerConeAngleDegrees");
+        if (!(light.innerConeAngle <= light.outerConeAngle)) in.fail("innerConeAngleDegrees", "must not be larger than outerConeAngleDegrees");
     } else if (type == "point") {
         in.allowOnly({"type", "name", "position", "color", "intensity", "range"});
         const std::vector<Light> faces =

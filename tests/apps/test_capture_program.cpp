@@ -72,7 +72,8 @@ TEST_CASE("capture program: bad usage is one line, exit code 2, and nothing left
     };
     const auto c = GENERATE(values<Case>({{"capture cornell-box", "needs -o FOLDER"},
                                           {"capture nowhere -o out", "nowhere"},
-                                          {"capture cornell-box -o out --only lrsm,cone" + kTinyCapture, "--only cone"},
+                                          {"capture cornell-box -o out --only lrsm,cone" + kTinyCapture, "\"cone\" is no pass; they are voxelize, "},
+                                          {"capture cornell-box --only -o out", "\"-o\" is no pass; they are voxelize, "},
                                           {"capture cornell-box -o out --size 0x0", "--size 0x0"}}));
     const Sandbox box;
     const Outcome outcome = box.run(c.arguments);
@@ -81,4 +82,27 @@ TEST_CASE("capture program: bad usage is one line, exit code 2, and nothing left
     CHECK(isOneLine(outcome.err));
     CHECK(contains(outcome.err, c.message));
     CHECK(box.empty());
+}
+
+TEST_CASE("capture program: a folder used again holds the last capture alone, and check rests on nothing else", "[apps][capture]")
+{
+    const Sandbox box;
+    REQUIRE(box.run("capture cornell-box -o golden --quiet" + kTinyCapture).code == 0);
+    REQUIRE(box.run("capture cornell-box -o used --quiet" + kTinyCapture).code == 0);
+    std::ofstream(box.here() / "used" / "mine.txt") << "mine";
+    REQUIRE(box.run("capture cornell-box --only gbuffer --set shadows=off -o used --quiet --no-pictures" + kTinyCapture).code == 0);
+    CHECK(fs::exists(box.here() / "used" / "mine.txt"));
+    CHECK(fs::exists(box.here() / "used" / "gbuffer.normal.npy"));
+    for (const char* file : {"direct.npy", "voxel.bits.npy", "frame.exr", "rsm0.exr", "contact-sheet.png", "voxel.dds"})
+        CHECK_FALSE(fs::exists(box.here() / "used" / file));
+
+    // A file of another run that came there by other ways.
+    fs::copy_file(box.here() / "golden" / "voxel.bits.npy", box.here() / "used" / "voxel.bits.npy");
+    const Outcome outcome = box.run("check golden used");
+    CAPTURE(outcome.out);
+    CHECK(contains(outcome.out, "1 buffer is not in the candidate's manifest, and left out as of another run: voxel.bits.npy"));
+
+    const Outcome render = box.run("render cornell-box -o used" + kTinyCapture);
+    CHECK(render.code == 2);
+    CHECK(contains(render.err, "holds what `lrsm capture` wrote; give render a folder of its own"));
 }

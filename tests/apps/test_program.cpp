@@ -38,7 +38,6 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         std::string arguments, message;
     };
     const auto c = GENERATE(values<Case>({
-        {"", "subcommand"},
         {"rendr cornell-box", "there is no command \"rendr\""},
         {"render", "needs -o FOLDER"},
         {"render -o out", "scene"},
@@ -50,6 +49,14 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box -o out --size 100", "--size 100"},
         {"render cornell-box -o out --size -5x5", "--size -5x5"},
         {"render cornell-box -o out --size 99999x10", "16384"},
+        {"render cornell-box -o out --animation 4", "animation 4: the built-in scene cornell-box has none"},
+        {"render cornell-box -o out --voxel-resolution=64", "--set voxel_resolution=64"},
+        {"render cornell-box -o out voxel_resolution=64", "--set voxel_resolution=64"},
+        {"compare a b --shadows hard", "`lrsm compare` takes no settings"},
+        {"render cornell-box -o out --quite", "did you mean --quiet?"},
+        {"help rendr", "there is no command \"rendr\""},
+        {"render cornell-box -o /", "is the root of the file system"},
+        {"sweep cornell-box -o /", "is the root of the file system"},
         {"render cornell-box -o out --preset best", "literal, paper, fast, balanced, fine, accurate"},
         {"render cornell-box -o out --set push=nan", "push=nan: must be [0, 16]"},
         {"render cornell-box -o out --set cone_cuont=7", "did you mean cone_count?"},
@@ -112,7 +119,13 @@ TEST_CASE("program: help, version and the lists are answered with exit code 0", 
     const Sandbox sandbox;
     CHECK(contains(sandbox.run("--help").out, "render"));
     CHECK(contains(sandbox.run("render --help").out, "--preset"));
+    CHECK(sandbox.run("help").out == sandbox.run("--help").out);
+    CHECK(sandbox.run("help render").out == sandbox.run("render --help").out);
     CHECK(sandbox.run("--version").code == 0);
+    CHECK(sandbox.run("-v").out == sandbox.run("--version").out);
+    const Outcome bare = sandbox.run("");
+    CHECK(bare.code == 2);
+    CHECK(contains(bare.err, "render"));
     const Outcome list = sandbox.run("info --list");
     CHECK(list.code == 0);
     for (const char* name : {"cornell-box", "two-rooms", "atrium", "furnace"}) CHECK(contains(list.out, name));
@@ -232,5 +245,72 @@ TEST_CASE("program: every malformed file ends in one clear line or a picture, ne
             CHECK(sandbox.empty());
         }
         fs::remove_all(sandbox.here() / "out");
+    }
+}
+
+TEST_CASE("program: man and bash are told every command, option and setting", "[apps]")
+{
+    const Sandbox sandbox;
+    const std::string page = sandbox.run("man").out, script = sandbox.run("completion bash").out;
+    const Json settings = Json::parse(sandbox.run("settings --json").out);
+    for (const std::string command : {"info", "render", "reference", "check", "tune"}) {
+        CHECK(contains(page, ".SS lrsm \\&" + command + "\n"));
+        CHECK(contains(script, "    " + command + ")\n"));
+    }
+    for (const auto& [key, value] : settings.items()) {
+        CHECK(contains(page, "\\&" + key + " = "));
+        CHECK(contains(script, key + "="));
+    }
+    CHECK(contains(page, "\\-\\-max\\-memory"));
+    std::ofstream(sandbox.here() / "lrsm.bash") << script;
+    const auto completed = [&](const std::string& words) {
+        const std::string bash = "bash -c 'source lrsm.bash; COMP_WORDS=(lrsm " + words +
+                                 "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _lrsm 2>/dev/null; echo ${COMPREPLY[*]} >completed';";
+        sandbox.run("--version", bash);
+        return readText(sandbox.here() / "completed");
+    };
+    CHECK(completed("rend") == "render\n");
+    CHECK(completed("help capt") == "capture\n");
+    CHECK(completed("render cornell-b") == "cornell-box\n");
+    CHECK(completed("render x --pres") == "--preset\n");
+    CHECK(completed("render x --preset vct-") == "vct-paper\n");
+    CHECK(completed("render x --set voxel_res") == "voxel_resolution=\n");
+}
+
+TEST_CASE("program: a reference's folder is not rendered into", "[apps]")
+{
+    const Sandbox sandbox;
+    REQUIRE(sandbox.run("reference cornell-box -o truth --size 16x9 --spp 1 --quiet").code == 0);
+    const std::string before = readText(sandbox.here() / "truth" / "frame.json");
+    for (const char* arguments : {"render cornell-box -o truth", "render cornell-box --frames 0:2 -o truth", "capture cornell-box -o truth"}) {
+        const Outcome outcome = sandbox.run(arguments + kTiny);
+        CHECK(outcome.code == 2);
+        CHECK(contains(outcome.err, "truth: holds what `lrsm reference` wrote; give"));
+    }
+    CHECK(readText(sandbox.here() / "truth" / "frame.json") == before);
+    REQUIRE(sandbox.run("render cornell-box --frames 0:1 -o frames --quiet" + kTiny).code == 0);
+    CHECK(contains(sandbox.run("reference cornell-box --frames 0:1 -o frames --size 16x9 --spp 1").err, "frames: holds what `lrsm render` wrote"));
+}
+
+TEST_CASE("program: threads that the system refuses are done without, or are one line and exit code 3", "[apps][threads]")
+{
+    const Sandbox sandbox;
+    REQUIRE(sandbox.run("render cornell-box -o all --quiet" + kTiny).code == 0);
+    if (::getuid() == 0) {  // root knows no limit: nobody renders, where nobody may
+        const std::string nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+        if (std::system((nobody + "'" LRSM_PROGRAM "' --version >/dev/null 2>&1").c_str()) != 0) {
+            WARN("SKIPPED: nobody may not start the program");
+            return;
+        }
+        fs::permissions(sandbox.here(), fs::perms::all);
+        fs::permissions(sandbox.here().parent_path(), fs::perms(0755));
+        for (const int limit : {2, 5, 6}) {
+            const std::string folder = "limit" + std::to_string(limit), run = nobody + "prlimit --nproc=" + std::to_string(limit);
+            const Outcome outcome = sandbox.run("render cornell-box -o " + folder + " --quiet" + kTiny, run);
+            CAPTURE(limit, outcome.err);
+            CHECK((outcome.code == 0 || outcome.code == 3));
+            CHECK((outcome.err.empty() || isOneLine(outcome.err)));
+            if (outcome.code == 0) CHECK(readText(sandbox.here() / folder / "image.exr") == readText(sandbox.here() / "all" / "image.exr"));
+        }
     }
 }

@@ -103,6 +103,32 @@ TEST_CASE("program: sweep killed or interrupted goes on to the rows of an uninte
     }
 }
 
+TEST_CASE("program: sweep in parts has the rows of a whole one, each once, and they join by their files", "[apps][sweep]")
+{
+    const Sandbox box;
+    const std::string axes = "--axis cone_count=2,4,6 --quiet --references references ";
+    REQUIRE(box.run(kTinySweepTraced + axes + "-o whole").code == 0);
+    for (const char* part : {"0/3", "1/3", "2/3"}) REQUIRE(box.run(kTinySweepTraced + axes + "--part " + part + " -o part" + part[0]).code == 0);
+    const auto whole = sweptRows(box.here() / "whole");
+    std::size_t parts = 0;
+    std::string lines;
+    for (const char* part : {"part0", "part1", "part2"}) {
+        const auto rows = sweptRows(box.here() / part);
+        CHECK(rows.size() < whole.size());
+        parts += rows.size();
+        lines += readText(box.here() / part / "rows.jsonl");
+        for (const auto& [key, row] : rows) {
+            REQUIRE(whole.count(key) == 1);
+            CHECK(whole.at(key)["rmse"] == row["rmse"]);
+        }
+    }
+    CHECK(parts == whole.size());
+    fs::create_directory(box.here() / "joined");
+    std::ofstream(box.here() / "joined" / "rows.jsonl", std::ios::binary) << lines;
+    REQUIRE(box.run("sweep --report-only --quiet -o joined").code == 0);
+    CHECK(Json::parse(readText(box.here() / "joined" / "sweep.json")).size() == whole.size());
+}
+
 TEST_CASE("program: sweep searches for the front and can be continued", "[apps][sweep]")
 {
     const Sandbox box;
@@ -116,9 +142,10 @@ TEST_CASE("program: sweep searches for the front and can be continued", "[apps][
 TEST_CASE("program: sweep refuses what makes no sense in one line, and leaves nothing", "[apps][sweep]")
 {
     const Sandbox box;
-    for (const char* arguments : {"cornell-box", "-o out", "no-such-scene -o out", "cornell-box -o out --axis cone_count=",
-                                  "cornell-box -o out --axes no-such-file", "cornell-box -o out --axes search --axis cone_count=1",
-                                  "cornell-box -o out --size 0x1", "cornell-box -o out --max-memory -1", "--report-only -o out"}) {
+    for (const char* arguments :
+         {"cornell-box", "-o out", "no-such-scene -o out", "cornell-box -o out --axis cone_count=", "cornell-box -o out --axes no-such-file",
+          "cornell-box -o out --axes search --axis cone_count=1", "cornell-box -o out --axes search --part 0/2", "cornell-box -o out --part 2/2",
+          "cornell-box -o out --part 1", "cornell-box -o out --size 0x1", "cornell-box -o out --max-memory -1", "--report-only -o out"}) {
         const Outcome refused = box.run(std::string("sweep ") + arguments);
         INFO(arguments << ": " << refused.err);
         CHECK(refused.code == 2);

@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "python.h"
 #include "sandbox.h"
 
 #include <nlohmann/json.hpp>
@@ -63,11 +64,51 @@ TEST_CASE("program: validate refuses what has no meaning in one line", "[apps][v
 {
     Sandbox box;
     for (const char* arguments : {"--equation 99", "--equation 12 cornell-box", "--only moments", "--extremes --equation 12", "--extremes --only no-such-case",
-                                  "no-such-scene", "--samples 0", "cornell-box --preset none"}) {
+                                  "no-such-scene", "--samples 0", "cornell-box --preset none", "--junit j.xml", "--against nowhere", "--against .",
+                                  "--vectors v cornell-box", "--vectors v --extremes", "--vectors v --junit j.xml"}) {
         const Outcome run = box.run(std::string("validate ") + arguments + " -o result");
         INFO(arguments);
         CHECK(run.code == 2);
         CHECK(isOneLine(run.err));
         CHECK(box.empty());
     }
+}
+
+TEST_CASE("program: the equations in NumPy go through validate --against, and a slip of theirs is named", "[apps][validate][vectors]")
+{
+    LRSM_NEED_PYTHON(python, "numpy");
+    Sandbox box;
+    const Outcome written = box.run("validate --vectors v");
+    REQUIRE(written.code == 0);
+    CHECK(isOneLine(written.out));
+    const std::string here = "cd '" + box.here().string() + "' && ";
+    const CommandOutcome example = runCommand(here + python + " '" LRSM_SOURCE_DIR "/docs/examples/vectors.py' v");
+    INFO(example.text);
+    REQUIRE(example.code == 0);
+    const Outcome fine = box.run("validate --against v --junit fine.xml");
+    CHECK(fine.code == 0);
+    CHECK(contains(fine.out, "within what is allowed"));
+    CHECK(contains(readText(box.here() / "fine.xml"), "failures=\"0\" errors=\"0\""));
+    // A folder of one's own; and one for each equation, in which a factor is lost.
+    const std::string folders =
+        "import glob, os, shutil\nimport numpy as np\nos.mkdir('mine')\n"
+        "for f in glob.glob('v/*.npy'):\n"
+        "  if f.count('.') == 2: shutil.copy(f, 'mine')\n"
+        "for e in range(1, 16):\n"
+        "  shutil.copytree('mine', 'slip%d' % e)\n"
+        "  for f in glob.glob('slip%d/eq%d.*.npy' % (e, e)): np.save(f, 0.5 * np.load(f))\n";
+    REQUIRE(runCommand(here + python + " -c \"" + folders + "\"").code == 0);
+    for (int equation = 1; equation <= 15; ++equation) {
+        const Outcome wrong = box.run("validate --against slip" + std::to_string(equation) + " --vectors v --quiet --junit wrong.xml");
+        CHECK(wrong.code == 1);
+        CHECK(contains(wrong.out, "WRONG: Eq. " + std::to_string(equation) + ";"));
+        CHECK(contains(readText(box.here() / "wrong.xml"), "<failure message="));
+    }
+    const ValidateJson json = ValidateJson::parse(box.run("validate --against mine --vectors v --json -o report").out);
+    CHECK(json["held"] == true);
+    CHECK(contains(readText(box.here() / "report" / "report.html"), "eq12.visibility"));
+    REQUIRE(runCommand(here + "mv mine/eq5.radiance.npy mine/eq5.radiace.npy").code == 0);
+    const Outcome misnamed = box.run("validate --against mine --vectors v");
+    CHECK(misnamed.code == 2);
+    CHECK(contains(misnamed.out, "eq5.radiace.npy is of no output; did you mean eq5.radiance.npy?"));
 }

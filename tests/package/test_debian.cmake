@@ -30,7 +30,7 @@ function(expect_package name must must_not)
   expect_no_traces(${SCRATCH}/${name})
 endfunction()
 
-expect_package(lrsm "libembree;libopenimageio;libtbb12;libssl3;libzip[45];libstdc[+][+]6;/usr/bin/lrsm\n;/usr/share/doc/lrsm/copyright\n;/usr/share/doc/lrsm/README.md\n;/usr/share/doc/lrsm/docs/start.md\n"
+expect_package(lrsm "libembree;libopenimageio;libtbb12;libssl3;libzip[45];libmeshoptimizer;libwebp7;libstdc[+][+]6;/usr/bin/lrsm\n;/usr/share/man/man1/lrsm.1.gz\n;/usr/share/bash-completion/completions/lrsm\n;/usr/share/doc/lrsm/copyright\n;/usr/share/doc/lrsm/README.md\n;/usr/share/doc/lrsm/docs/start.md\n"
                "\\.h\n;\\.a\n;libcatch;/usr/local")
 expect_package(liblrsm-dev "libtinygltf-dev;libembree-dev;liblrsm_voxel.a\n;/usr/include/lrsm/voxel/voxelize.h\n;/lrsmConfig.cmake\n" "/usr/bin;\\.cpp\n;liblrsm_capture")
 

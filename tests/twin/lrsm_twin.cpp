@@ -1,6 +1,7 @@
 // lrsm_twin GOLDEN [options]: the passes of a capture once more, on OpenGL.
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"
+#include "tests/twin/vectors.h"
 
 #include <cstdio>
 #include <exception>
@@ -12,7 +13,7 @@ namespace {
 using namespace lrsm::twin;
 
 struct Arguments {
-    std::string golden, candidate;
+    std::string golden, candidate, vectors;
     std::string plant;
     std::vector<std::string> frames;
     bool fromGolden = false, driverFormats = false;
@@ -22,7 +23,8 @@ struct Arguments {
 int usage()
 {
     std::puts(
-        "lrsm_twin GOLDEN [options]\n\n"
+        "lrsm_twin GOLDEN [options]\n"
+        "lrsm_twin --vectors DIR      results of what `lrsm validate --vectors DIR` asks, beside the inputs\n\n"
         "Runs the passes of the capture GOLDEN on OpenGL 4.5, compares, and writes the buffers to CANDIDATE.\n"
         "  -o CANDIDATE      folder for the buffers\n"
         "  --from-golden     each pass reads the golden's buffers: differences do not add up\n"
@@ -47,6 +49,8 @@ bool parse(int argc, char** argv, Arguments& to)
             to.frames.push_back(argv[++i]);
         } else if (argument == "-o" && more) {
             to.candidate = argv[++i];
+        } else if (argument == "--vectors" && more) {
+            to.vectors = argv[++i];
         } else if (argument == "--plant" && more) {
             to.plant = argv[++i];
         } else if (argument == "--repeat" && more) {
@@ -57,7 +61,7 @@ bool parse(int argc, char** argv, Arguments& to)
             return false;
         }
     }
-    return !to.golden.empty();
+    return to.golden.empty() != to.vectors.empty();
 }
 
 /// Milliseconds of each pass in the fastest of some frame.json.
@@ -96,6 +100,11 @@ int run(const Arguments& arguments)
         return 3;
     }
     std::printf("%s\n", context->renderer().c_str());
+    if (!arguments.vectors.empty()) {
+        Programs programs;
+        for (const std::string& name : runVectors(programs, arguments.vectors, arguments.vectors)) std::printf("left out: %s\n", name.c_str());
+        return 0;
+    }
     Frame frame(arguments.golden, !arguments.fromGolden);
     frame.repeats = arguments.repeats;
     Programs programs;

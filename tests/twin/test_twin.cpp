@@ -4,10 +4,14 @@
 #include "apps/capture/capture_files.h"
 #include "apps/capture/record.h"
 #include "apps/check/check.h"
+#include "apps/validate/vectors/judge.h"
+#include "apps/validate/vectors/make_vectors.h"
+#include "apps/validate/vectors/vector_files.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/settings/settings_table.h"
 #include "tests/twin/compare.h"
 #include "tests/twin/passes.h"
+#include "tests/twin/vectors.h"
 
 #include <map>
 #include <set>
@@ -171,5 +175,26 @@ TEST_CASE("an error planted in a shader is named at its pass, and at no other", 
         CHECK(kindOf(report.firstWrong()->golden->pass) == plant.pass);
         for (const CheckedBuffer& buffer : report.buffers)
             if (buffer.verdict == Verdict::wrong) CHECK(kindOf(buffer.golden->pass) == plant.pass);
+    }
+}
+
+TEST_CASE("the equations one by one on OpenGL are within what the vectors allow", "[twin][vectors]")
+{
+    if (!context()) return;
+    const ScratchFolder scratch;
+    const std::vector<VectorSet> sets = makeVectors();
+    OutputFolder folder(scratch.path("vectors"));
+    writeVectors(folder, sets, "test");
+    folder.commit();
+    twin::Programs programs;
+    const std::vector<std::string> leftOut = twin::runVectors(programs, scratch.path("vectors"), scratch.path("results"));
+    CHECK(leftOut == std::vector<std::string>{"partition", "opacity_lookup", "six_cones", "specular_aperture", "unorm8", "log2_double", "exp2_double", "sin",
+                                              "cos", "arc_tangent", "power"});
+    const Judgement judgement = judgeFolder(sets, scratch.path("results"));
+    CHECK(judgement.holds());
+    CHECK(judgement.count(OutputVerdict::ok) == 34);
+    for (const JudgedOutput& o : judgement.outputs) {
+        INFO(o.output->exact.name << ": " << o.outside << " outside, at " << caseText(*o.set, o.worstCase()));
+        CHECK((o.verdict == OutputVerdict::ok || o.verdict == OutputVerdict::missing));
     }
 }

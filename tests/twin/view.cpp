@@ -165,7 +165,8 @@ void cones(Frame& frame, const Options& options)
     const Json &lights = frame.manifest()["lights"], &table = frame.manifest()["cones"];
     const bool slab = frame.is("estimator", "slab");
     const std::vector<std::string> files = {
-        "pixel.glsl", "light.glsl", "opacity.glsl", "lrsm.glsl", "schedule.glsl", slab ? "march_slab.glsl" : "march_paper.glsl", "cones.comp.glsl"};
+        "pixel.glsl",     "light.glsl", "opacity.glsl", "lrsm.glsl", "terms.glsl", "schedule.glsl", slab ? "march_slab.glsl" : "march_paper.glsl",
+        "cones.comp.glsl"};
     const Program& program = options.compute("cones", files, coneDefines(frame, frame.input("tables.schedules"), table["rings"].size()));
     const Pixels pixels(frame, program);
     setGrid(frame, program);

@@ -2,6 +2,7 @@
 #include "conetrace/frame/cones.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/closed_forms.h"
 
 namespace lrsm {
 namespace {
@@ -19,10 +20,9 @@ void checkSix(CheckRun& run)
     const auto worst = exhaust(6, [&](std::uint64_t i) {
         if (set.rings.size() != 2 || set.directions.size() != 6 * kRotations) return 1.0;
         const ConeRing& ring = set.rings[i ? 1 : 0];
-        double error = std::max(std::abs(double(ring.weight) - (i ? 3.0 / 20.0 : 1.0 / 4.0)), std::abs(double(ring.tanHalf) - std::tan(kPiDouble / 6)));
-        const double azimuth = 2.0 * kPiDouble * (double(i) - 1.0) / 5.0, sine = i ? std::sin(kPiDouble / 3) : 0.0;
-        const double expected[3] = {sine * std::cos(azimuth), sine * std::sin(azimuth), i ? 0.5 : 1.0};
-        for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(double(set.directions[i][c]) - expected[c]));
+        const oracle::Cone expected = oracle::coneOfSix(static_cast<int>(i));
+        double error = std::max(std::abs(double(ring.weight) - expected.weight), std::abs(double(ring.tanHalf) - expected.tanHalf));
+        for (int c = 0; c < 3; ++c) error = std::max(error, std::abs(double(set.directions[i][c]) - expected.axis[c]));
         return error;
     });
     run.add({.equation = "fig7",
@@ -142,7 +142,7 @@ void checkSpecular(CheckRun& run)
         [](const auto& in) {
             ConeSettings settings;
             settings.specular.aperture = SpecularAperture::roughness;
-            const double alpha = double(in[0]) * double(in[0]), exact = std::min(std::tan(kPiDouble / 3), alpha < 1.0 ? std::tan(2.0 * std::atan(alpha)) : 1e9);
+            const double exact = oracle::specularTanHalf(in[0]);
             settings.specular.aperture = SpecularAperture::roughness;
             const double error = std::abs(double(specularTanHalf(settings, in[0])) - exact);
             settings.specular.aperture = SpecularAperture::fixed;

@@ -2,6 +2,7 @@
 #include "lrsm/gaussian_visibility.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/equation_inputs.h"
 #include "apps/validate/equations/oracle.h"
 
 namespace lrsm {
@@ -93,21 +94,6 @@ void checkExactDouble(CheckRun& run)
             worst, inputText<double, 1>({"x"}, worst.input));
 }
 
-/// A cone sample given by where its nearer end lies: `edge` sigmas from the mean. V changes nowhere else.
-struct Window {
-    float mu, sigma2, zc, rc;
-};
-Window windowOf(const std::array<float, 4>& in)
-{
-    const float mu = in[0], sigma = in[1], edge = in[2], rc = in[3];
-    return {mu, sigma * sigma, mu + rc + sigma * edge, rc};
-}
-SearchSpace<float, 4> windows()
-{
-    return {
-        {{{0.0f, 1.0f}, {0x1p-24f, 1.0f, Spacing::logarithmic}, {-9.0f, 9.0f}, {0x1p-20f, 2.0f, Spacing::logarithmic}}},
-        {{0.5f, 0.005f, 0.0f, 0.25f}, {0.0f, 0.1f, -1.0f, 0.1f}, {1.0f, 0.2f, 5.0f, 1.0f}, {0.3f, 0x1p-20f, -5.25f, 0x1p-10f}, {0.7f, 1.0f, 0.0f, 0x1p-20f}}};
-}
 double visibilityError(const NormalCdf& phi, const Window& w, float v)
 {
     if (!(v >= 0.0f && v <= 1.0f)) return std::numeric_limits<double>::infinity();
@@ -123,7 +109,7 @@ EquationTrade checkVisibility(CheckRun& run, GaussianMethod method, int tableSiz
         const Window w = windowOf(in);
         return visibilityError(phi, w, gaussianVisibility(phi, w.mu, w.sigma2, w.zc, w.rc));
     };
-    auto worst = findWorst(windows(), run.budget(60000), error, 306);
+    auto worst = findWorst(windowSpace(0x1p-24f), run.budget(60000), error, 306);
     const Window at = windowOf(worst.input);
     worst.error = std::abs(oracle::visibilityError(at.mu, at.sigma2, at.zc, at.rc, double(gaussianVisibility(phi, at.mu, at.sigma2, at.zc, at.rc))));
 

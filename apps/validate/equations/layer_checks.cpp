@@ -2,6 +2,7 @@
 #include "lrsm/layers.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/equation_inputs.h"
 #include "apps/validate/equations/format_oracle.h"
 #include "apps/validate/equations/layer_model.h"
 #include "apps/validate/equations/synthetic_maps.h"
@@ -91,35 +92,22 @@ void checkFlatMap(CheckRun& run)
 /// Eq. 15 alone, on ranges and depths of any bits.
 void checkDecay(CheckRun& run)
 {
-    const auto rangeOf = [](const std::array<float, 4>& in) {
-        LayerRange r;
-        r.depthMin = in[0];
-        r.depthMax = in[0] + in[1];
-        r.delta = 0.5f * in[1] * in[2];
-        r.decayAtMin = r.decayAtMax = true;
-        return r;
-    };
-    // in[3]: where in the range, from just before it to just behind.
-    const SearchSpace<float, 4> space{
-        {{{0.0f, 0.9f}, {1e-3f, 1.0f, Spacing::logarithmic}, {0.01f, 1.0f}, {-0.01f, 1.01f}}},
-        {{0.25f, 0.5f, 0.5f, 0.0f}, {0.25f, 0.5f, 0.5f, 1.0f}, {0.25f, 0.5f, 0.5f, 0.125f}, {0.25f, 0.5f, 0.5f, 0.875f}, {0.1f, 0.3f, 1.0f, 0.5f}}};
     const auto worst = findWorst(
-        space, run.budget(150000),
-        [&](const auto& in) {
-            const LayerRange r = rangeOf(in);
-            const float z = r.depthMin + (r.depthMax - r.depthMin) * in[3];
+        decaySpace(), run.budget(150000),
+        [](const auto& in) {
+            const auto [r, z] = decayOf(in);
             return std::abs(double(decay(r, z)) - twin::decay(twin::sliceOf(r), double(z)));
         },
         511);
-    const LayerRange r = rangeOf(worst.input);
+    const LayerRange r = decayOf(worst.input).first;
+    const float zAtWorst = decayOf(worst.input).second;
     run.add({.equation = "15",
              .function = "decay",
              .oracle = "smoothstep in double",
              .domain = "ranges of 1e-3 .. 1 in [0, 2], delta up to half of it, z_c in and beside it",
              .bound = {"kDecayMaxError", double(kDecayMaxError)},
              .nanoseconds = run.time(4096, [&](std::size_t i) { return decay(r, r.depthMin + float(i) / 4096.0f * (r.depthMax - r.depthMin)); })},
-            worst,
-            inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, r.depthMin + (r.depthMax - r.depthMin) * worst.input[3]}));
+            worst, inputText<float, 4>({"zMin", "zMax", "delta", "z_c"}, {r.depthMin, r.depthMax, r.delta, zAtWorst}));
 
     // The ends that do not decay: 1 up to and with the last float, 0 beyond; half-open where a neighbour begins.
     const auto ends = exhaust(4 * 5 * 2, [](std::uint64_t i) {
@@ -172,33 +160,6 @@ void checkDecaySum(CheckRun& run)
             worst, at);
 }
 
-/// What a texel of a layer's pyramid must hold: the sum over the RSM texels below it that are in the layer, by the printed membership, over all of them.
-struct Mean {
-    double radiance[3] = {}, normal[3] = {}, alpha = 0.0, z = 0.0, z2 = 0.0;
-};
-Mean meanOf(const Rsm& rsm, const std::vector<LayerRange>& all, const LayerRange& range, int lod, int x, int y)
-{
-    float farthest = -1e30f, steepest = -1e30f;
-    for (const LayerRange& r : all) farthest = std::max(farthest, r.depthMax), steepest = std::max(steepest, r.nDotLMax);
-    const int edge = 2 << lod;
-    Mean mean;
-    for (int j = 0; j < edge; ++j)
-        for (int i = 0; i < edge; ++i) {
-            const RsmTexel& t = rsm.texels.at(x * edge + i, y * edge + j);
-            const float z = rsm.depthLinear.at(x * edge + i, y * edge + j);
-            const bool inDepth = z >= range.depthMin && (z < range.depthMax || (z == range.depthMax && range.depthMax == farthest));
-            const bool inNormal = t.nDotL >= range.nDotLMin && (t.nDotL < range.nDotLMax || (t.nDotL == range.nDotLMax && range.nDotLMax == steepest));
-            if (t.coverage == 0.0f || !inDepth || !inNormal) continue;
-            const double w = (double(z) - double(range.depthMin)) / (double(range.depthMax) - double(range.depthMin));
-            for (int c = 0; c < 3; ++c) mean.radiance[c] += double(t.radiance[c]), mean.normal[c] += double(t.normal[c]);
-            mean.alpha += 1.0, mean.z += w, mean.z2 += w * w;
-        }
-    const double texels = double(edge) * edge;
-    for (int c = 0; c < 3; ++c) mean.radiance[c] /= texels, mean.normal[c] /= texels;
-    mean.alpha /= texels, mean.z /= texels, mean.z2 /= texels;
-    return mean;
-}
-
 template <class Visit>
 void forEachTexel(const Lrsm& lrsm, const Visit& visit)
 {
@@ -238,7 +199,7 @@ void checkMeans(CheckRun& run)
         const auto all = partition(rsm, settings);
         const Lrsm lrsm = buildLrsm(rsm, settings);
         forEachTexel(lrsm, [&](int layer, int lod, int x, int y, const LrsmTexel& t) {
-            const Mean m = meanOf(rsm, all, lrsm.ranges[std::size_t(layer)], lod, x, y);
+            const LayerMean m = meanOf(rsm, all, lrsm.ranges[std::size_t(layer)], lod, x, y);
             double r = 0.0, n = 0.0;
             for (int c = 0; c < 3; ++c) {
                 r = std::max(r, std::abs(double(t.radiance[c]) - m.radiance[c]) / kSyntheticRadiance);

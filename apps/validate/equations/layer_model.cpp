@@ -63,4 +63,31 @@ std::vector<SelectedSlice> LayerModel::select(double zc, double window, LayerSel
     return selected;
 }
 
+bool belongs(const std::vector<LayerRange>& all, const LayerRange& range, float depth, float nDotL)
+{
+    float farthest = -1e30f, steepest = -1e30f;
+    for (const LayerRange& r : all) farthest = std::max(farthest, r.depthMax), steepest = std::max(steepest, r.nDotLMax);
+    const bool inDepth = depth >= range.depthMin && (depth < range.depthMax || (depth == range.depthMax && range.depthMax == farthest));
+    return inDepth && nDotL >= range.nDotLMin && (nDotL < range.nDotLMax || (nDotL == range.nDotLMax && range.nDotLMax == steepest));
+}
+
+LayerMean meanOf(const Rsm& rsm, const std::vector<LayerRange>& all, const LayerRange& range, int lod, int x, int y)
+{
+    const int edge = 2 << lod;
+    LayerMean mean;
+    for (int j = 0; j < edge; ++j)
+        for (int i = 0; i < edge; ++i) {
+            const RsmTexel& t = rsm.texels.at(x * edge + i, y * edge + j);
+            const float z = rsm.depthLinear.at(x * edge + i, y * edge + j);
+            if (t.coverage == 0.0f || !belongs(all, range, z, t.nDotL)) continue;
+            const double w = (double(z) - double(range.depthMin)) / (double(range.depthMax) - double(range.depthMin));
+            for (int c = 0; c < 3; ++c) mean.radiance[c] += double(t.radiance[c]), mean.normal[c] += double(t.normal[c]);
+            mean.alpha += 1.0, mean.z += w, mean.z2 += w * w;
+        }
+    const double texels = double(edge) * edge;
+    for (int c = 0; c < 3; ++c) mean.radiance[c] /= texels, mean.normal[c] /= texels;
+    mean.alpha /= texels, mean.z /= texels, mean.z2 /= texels;
+    return mean;
+}
+
 }  // namespace lrsm

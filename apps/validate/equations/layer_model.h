@@ -38,4 +38,13 @@ class LayerModel {
     bool outermostDecay_ = false;
 };
 
+/// Is an RSM texel of this depth and <n.l> in the layer, by the printed membership: half-open ranges, the farthest and steepest of `all` closed.
+bool belongs(const std::vector<LayerRange>& all, const LayerRange& range, float depth, float nDotL);
+
+/// What texel (x, y) of level `lod` of a layer must hold: the sum over the RSM texels below it that are in the layer, over all of them.
+struct LayerMean {
+    double radiance[3] = {}, normal[3] = {}, alpha = 0.0, z = 0.0, z2 = 0.0;
+};
+LayerMean meanOf(const Rsm& rsm, const std::vector<LayerRange>& all, const LayerRange& range, int lod, int x, int y);
+
 }  // namespace lrsm

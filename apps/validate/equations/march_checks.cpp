@@ -3,6 +3,7 @@
 #include "conetrace/lrsm/march_slab.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/equation_inputs.h"
 #include "apps/validate/equations/march_twin.h"
 #include "apps/validate/equations/synthetic_maps.h"
 
@@ -175,10 +176,8 @@ void checkStepOpacity(CheckRun& run)
 {
     ConeSettings settings;
     settings.march.opacity = OpacityModel::density;
-    const SearchSpace<float, 3> space{{{{1e-6f, 1.5f, Spacing::logarithmic}, {0.01f, 64.0f, Spacing::logarithmic}, {0.25f, 4.0f}}},
-                                      {{1.0f, 1.0f, 2.0f}, {0.5f, 1.0f, 1.0f}, {0.99999994f, 0.1f, 1.0f}}};
     const auto worst = findWorst(
-        space, run.budget(150000),
+        stepSpace(), run.budget(150000),
         [&](const auto& in) {
             ConeSettings s = settings;
             s.march.densityK = in[2];

@@ -136,7 +136,7 @@ March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRa
     const ConeSettings& settings = world.settings;
     const double voxel = double(world.opacity.base.grid.voxelSize), exit = exitOf(ray, world.opacity.base.grid.resolution);
     March result;
-    double clear = 1.0;
+    FrontToBack sum;
     for (const MarchStep& step : schedule.steps) {
         const double t = double(step.middle), diameter = double(step.diameter);
         result.toJump = std::min(result.toJump, std::abs(t - diameter - exit));
@@ -146,16 +146,18 @@ March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRa
         const double alpha = stepOpacity(densityOf(world, sampled, DVec3(ray.direction)), double(step.end) - double(step.begin), settings);
         const DVec3 pWorld = DVec3(ray.originWorld) + offset * voxel;
         const DVec3 back = DVec3(ray.originWorld) - pWorld, toReceiver = settings.march.push == 0.0f ? -DVec3(ray.direction) : glm::normalize(back);
+        DVec3 outgoing(0.0);
         for (const Lrsm& lrsm : world.lrsms) {
             const Outgoing out = algorithm1(lrsm, project(lrsm.projection, pWorld), {Vec3(pWorld), float(0.5 * diameter * voxel), Vec3(toReceiver)}, settings);
             result.toJump = std::min(result.toJump, out.toJump);
-            result.radiance += clear * alpha * out.radiance;
+            outgoing += out.radiance;
         }
-        clear *= 1.0 - alpha;
-        result.toJump = std::min(result.toJump, std::abs(clear - double(settings.march.transmittanceCutoff)));
-        if (clear < double(settings.march.transmittanceCutoff)) break;
+        sum.add(alpha, outgoing);
+        result.toJump = std::min(result.toJump, std::abs(sum.clear - double(settings.march.transmittanceCutoff)));
+        if (sum.clear < double(settings.march.transmittanceCutoff)) break;
     }
-    result.opacity = 1.0 - clear;
+    result.radiance = sum.radiance;
+    result.opacity = 1.0 - sum.clear;
     return result;
 }
 

@@ -29,6 +29,17 @@ struct March {
 March marchPaper(const ConeWorld& world, const OpacityField& field, const ConeRay& ray, const MarchSchedule& schedule);
 March marchSlab(const ConeWorld& world, const OpacityField& field, const ConeRay& ray, const MarchSchedule& schedule);
 
+/// Eq. 1, front to back: what samples of opacity alpha and outgoing radiance L add up to.
+struct FrontToBack {
+    DVec3 radiance{0.0};
+    double clear = 1.0;  ///< product of 1 - alpha so far
+    void add(double alpha, const DVec3& outgoing)
+    {
+        radiance += clear * alpha * outgoing;
+        clear *= 1.0 - alpha;
+    }
+};
+
 /// One minus transmittance of `length` base voxels of a medium whose mip value is `density`.
 double stepOpacity(double density, double length, const ConeSettings& settings);
 double transmittance(double opticalDepth, const ConeSettings& settings);

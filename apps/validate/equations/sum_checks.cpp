@@ -5,6 +5,7 @@
 #include "lrsm/rsm.h"
 
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/closed_forms.h"
 #include "apps/validate/equations/exact_sums.h"
 #include "apps/validate/equations/oracle.h"
 
@@ -12,7 +13,6 @@ namespace lrsm {
 namespace {
 
 using DVec3 = glm::dvec3;
-constexpr long double kPiWide = 3.14159265358979323846264338327950288L;
 
 void checkReflected(CheckRun& run)
 {
@@ -21,7 +21,7 @@ void checkReflected(CheckRun& run)
     const auto worst = findWorst(
         space, run.budget(150000),
         [](const auto& in) {
-            const long double exact = static_cast<long double>(in[0]) * static_cast<long double>(in[1]) * static_cast<long double>(in[2]) / kPiWide;
+            const long double exact = oracle::reflectedRadiance(in[0], in[1], in[2]);
             return static_cast<double>(std::abs(static_cast<long double>(reflectedRadiance(Vec3(in[0]), Vec3(in[1]), in[2]).y) / exact - 1.0L));
         },
         601);
@@ -64,7 +64,7 @@ void checkFloor(CheckRun& run)
         const double ramp = std::clamp((cosine - std::cos(kOuter)) / (std::cos(kInner) - std::cos(kOuter)), 0.0, 1.0);
         double error = 0.0;
         for (int k = 0; k < 3; ++k)
-            error = std::max(error, std::abs(double(texel.radiance[k]) / (rho[k] * intensity[k] / (kHeight * kHeight)) * double(kPiWide) -
+            error = std::max(error, std::abs(double(texel.radiance[k]) / (rho[k] * intensity[k] / (kHeight * kHeight)) * double(oracle::kPi) -
                                              cosine * cosine * cosine * ramp * ramp));
         return error;
     };
@@ -165,7 +165,7 @@ void checkSums(CheckRun& run)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x)
                 square.push_back({DVec3((x + 0.5) / n - 0.5, 0.0, (y + 0.5) / n - 0.5), DVec3(0, 1, 0), DVec3(0, 1, 0), DVec3(1.0), 1.0});
-        return std::abs(visibilityEq7(square, DVec3(0.0), radius) - static_cast<double>(kPiWide) * radius * radius);
+        return std::abs(visibilityEq7(square, DVec3(0.0), radius) - static_cast<double>(oracle::kPi) * radius * radius);
     });
     run.add({.equation = "7",
              .function = "visibilityEq7",

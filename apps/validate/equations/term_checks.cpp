@@ -3,6 +3,8 @@
 
 #include "apps/validate/equations/algorithm1_twin.h"
 #include "apps/validate/equations/check_run.h"
+#include "apps/validate/equations/closed_forms.h"
+#include "apps/validate/equations/equation_inputs.h"
 #include "apps/validate/equations/synthetic_maps.h"
 
 namespace lrsm {
@@ -11,28 +13,14 @@ namespace {
 /// Eq. 8.
 void checkNormalTerm(CheckRun& run)
 {
-    // A mean normal of length up to 1, premultiplied; directions by their coordinates, so that the search can move each.
-    const SearchSpace<float, 7> space{
-        {{{-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {0x1p-16f, 1.0f, Spacing::logarithmic}, {-1.0f, 1.0f}, {-1.0f, 1.0f}, {-1.0f, 1.0f}}},
-        {{1.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f}, {0.6f, 0.8f, 0.0f, 0.25f, 0.6f, 0.8f, 0.0f}}};
-    const auto inputs = [](const std::array<float, 7>& in) {
-        FilteredTexel texel;
-        texel.normalAlpha = in[3];
-        texel.normal = Vec3(in[0], in[1], in[2]) / std::max(1.0f, glm::length(Vec3(in[0], in[1], in[2]))) * in[3];
-        const Vec3 v(in[4], in[5], in[6]);
-        return std::pair(texel, v / std::max(glm::length(v), 1e-6f));
-    };
     const auto worst = findWorst(
-        space, run.budget(150000),
-        [&](const auto& in) {
-            const auto [texel, v] = inputs(in);
-            const long double n = (static_cast<long double>(texel.normal.x) * v.x + static_cast<long double>(texel.normal.y) * v.y +
-                                   static_cast<long double>(texel.normal.z) * v.z) /
-                                  texel.normalAlpha;
-            return static_cast<double>(std::abs(std::max(n, 0.0L) - static_cast<long double>(normalTerm(texel, v))));
+        normalTermSpace(), run.budget(150000),
+        [](const auto& in) {
+            const auto [texel, v] = normalTermOf(in);
+            return static_cast<double>(std::abs(oracle::normalTerm(texel, v) - static_cast<long double>(normalTerm(texel, v))));
         },
         401);
-    const auto [texel, v] = inputs(worst.input);
+    const auto [texel, v] = normalTermOf(worst.input);
     run.add({.equation = "8",
              .function = "normalTerm",
              .oracle = "dot product and division in long double",
@@ -55,24 +43,15 @@ void checkNormalTerm(CheckRun& run)
 /// Eq. 10 and 11, from the premultiplied sums as they are given; and the floor, from what UNORM16 leaves of a flat texel.
 void checkMoments(CheckRun& run)
 {
-    const SearchSpace<float, 3> space{{{{0x1p-16f, 1.0f, Spacing::logarithmic}, {0.0f, 1.0f}, {0.0f, 1.0f}}},
-                                      {{1.0f, 1.0f, 0.0f}, {1.0f, 0.5f, 1.0f}, {0.25f, 1.0f, 0.5f}}};
-    const auto texelOf = [](const std::array<float, 3>& in) {
-        FilteredTexel texel;
-        texel.depthAlpha = in[0];
-        texel.depth = in[0] * in[1];
-        texel.depthSquared = in[0] * (in[1] * in[1] + in[2] * in[1] * (1.0f - in[1]));  // in[2]: share of the largest possible variance
-        return texel;
-    };
-    const auto text = [&](const std::array<float, 3>& in) {
-        const FilteredTexel t = texelOf(in);
+    const auto text = [](const std::array<float, 3>& in) {
+        const FilteredTexel t = momentsOf(in);
         return inputText<float, 3>({"alpha z", "alpha z^2", "alpha"}, {t.depth, t.depthSquared, t.depthAlpha});
     };
     const auto mean = findWorst(
-        space, run.budget(100000),
+        momentSpace(), run.budget(100000),
         [&](const auto& in) {
-            const FilteredTexel t = texelOf(in);
-            return std::abs(static_cast<double>(static_cast<long double>(depthMoments(t).mean) - static_cast<long double>(t.depth) / t.depthAlpha));
+            const FilteredTexel t = momentsOf(in);
+            return std::abs(static_cast<double>(static_cast<long double>(depthMoments(t).mean) - oracle::depthMean(t)));
         },
         402);
     run.add({.equation = "10",
@@ -82,17 +61,18 @@ void checkMoments(CheckRun& run)
              .bound = {"kDepthMeanMaxError", double(kDepthMeanMaxError)},
              .nanoseconds = run.time(4096,
                                      [&](std::size_t i) {
-                                         return depthMoments(texelOf({1.0f, float(i) / 4096.0f, 0.5f})).variance;
+                                         return depthMoments(momentsOf({1.0f, float(i) / 4096.0f, 0.5f})).variance;
                                      })},
             mean, text(mean.input));
     const auto variance = findWorst(
-        space, run.budget(150000),
+        momentSpace(), run.budget(150000),
         [&](const auto& in) {
-            const FilteredTexel t = texelOf(in);
-            const long double m = static_cast<long double>(t.depth) / t.depthAlpha, exact = static_cast<long double>(t.depthSquared) / t.depthAlpha - m * m;
+            const FilteredTexel t = momentsOf(in);
+            const long double exact = oracle::depthVariance(t);
             const DepthMoments raw = depthMoments(t, -kInfinity), floored = depthMoments(t);
             if (raw.negative != (raw.variance < 0.0f)) return 1.0;
-            return std::max(std::abs(static_cast<double>(raw.variance - exact)), std::abs(static_cast<double>(floored.variance - std::max(exact, 2.5e-5L))));
+            return std::max(std::abs(static_cast<double>(raw.variance - exact)),
+                            std::abs(static_cast<double>(floored.variance - std::max(exact, oracle::kVarianceFloor))));
         },
         403);
     run.add({.equation = "11",
@@ -136,10 +116,8 @@ void checkMoments(CheckRun& run)
 /// Sec. 5.
 void checkLevel(CheckRun& run)
 {
-    const SearchSpace<float, 4> space{{{{1e-3f, 1e3f, Spacing::logarithmic}, {1e-4f, 1e2f, Spacing::logarithmic}, {-4.0f, 4.0f}, {0.0f, 4.0f}}},
-                                      {{2.0f, 1.0f, 0.0f, 0.0f}, {4.0f, 1.0f, 0.0f, 0.0f}, {1.0f, 0.01f, 0.5f, 0.0f}, {1e-3f, 1.0f, 0.0f, 2.0f}}};
     const auto worst = findWorst(
-        space, run.budget(150000),
+        levelSpace(), run.budget(150000),
         [](const auto& in) {
             return std::abs(double(lrsmLevel(in[0], in[1], in[2], in[3])) - twin::level(double(in[0]), double(in[1]), double(in[2]), double(in[3])));
         },

@@ -3,6 +3,7 @@
 
 #include "apps/validate/equations/check_run.h"
 #include "apps/validate/equations/synthetic_grids.h"
+#include "apps/validate/equations/voxel_lookup.h"
 
 namespace lrsm {
 namespace {
@@ -86,33 +87,6 @@ void checkLevels(CheckRun& run)
     run.add(exactCheck("sec3", "densityScale", "2^-min(level, 3)", "levels 0 .. 5"), scales, "level = " + exactText(scales.input[0]));
 }
 
-/// Quadrilinear lookup by tents over all texels near, in double.
-glm::dvec3 lookup(const OpacityPyramid& pyramid, const std::array<float, 4>& in)
-{
-    const double lod = std::min(std::max(double(in[3]), 0.0), pyramid.levels() - 1.0);
-    glm::dvec3 sum(0.0);
-    for (int level = static_cast<int>(lod); level <= std::min(static_cast<int>(lod) + 1, pyramid.levels() - 1); ++level) {
-        const int n = pyramid.resolutionAt(level);
-        const double share = std::max(0.0, 1.0 - std::abs(lod - level)),
-                     scale = pyramid.axes == OpacityAxes::directional ? std::ldexp(1.0, -std::min(level, 3)) : 1.0;
-        int first[3];
-        for (int i = 0; i < 3; ++i) first[i] = static_cast<int>(std::floor(double(in[std::size_t(i)]) / (1 << level) - 0.5));
-        for (int k = 0; k < 8; ++k) {
-            double weight = share * scale;
-            int c[3];
-            bool inside = true;
-            for (int i = 0; i < 3; ++i) {
-                c[i] = first[i] + ((k >> i) & 1);
-                weight *= std::max(0.0, 1.0 - std::abs(double(in[std::size_t(i)]) / (1 << level) - (c[i] + 0.5)));
-                inside = inside && c[i] >= 0 && c[i] < n;
-            }
-            for (int axis = 0; axis < 3 && inside; ++axis)
-                sum[axis] += weight * double(pyramid.value(level, pyramid.axes == OpacityAxes::directional && level > 0 ? axis : 0, c[0], c[1], c[2]));
-        }
-    }
-    return sum;
-}
-
 void checkLookup(CheckRun& run)
 {
     Worst<float, 4> worst;
@@ -128,7 +102,7 @@ void checkLookup(CheckRun& run)
                 space, run.budget(25000),
                 [&](const auto& in) {
                     const Vec3 got = sampleOpacity(pyramid, Vec3(in[0], in[1], in[2]), in[3], FilterFraction::exact);
-                    const glm::dvec3 exact = lookup(pyramid, in);
+                    const glm::dvec3 exact = oracle::lookup(pyramid, in);
                     return std::max({std::abs(double(got.x) - exact.x), std::abs(double(got.y) - exact.y), std::abs(double(got.z) - exact.z)});
                 },
                 812);

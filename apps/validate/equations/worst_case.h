@@ -114,7 +114,7 @@ template <class T>
 T alongAxis(const Axis<T>& axis, double u)
 {
     if (axis.spacing == Spacing::linear) return clampTo(axis, static_cast<T>(double(axis.low) + (double(axis.high) - double(axis.low)) * u));
-    const double span = std::log2(double(axis.high) / double(axis.low));
+    const double span = std::log2(double(axis.high)) - std::log2(double(axis.low));  // their ratio may be beyond double
     if (axis.spacing == Spacing::logarithmic) return clampTo(axis, static_cast<T>(double(axis.low) * std::exp2(span * u)));
     const double half = 2.0 * (u < 0.5 ? 0.5 - u : u - 0.5), magnitude = double(axis.low) * std::exp2(span * half);
     return clampTo(axis, static_cast<T>(u < 0.5 ? -magnitude : magnitude));

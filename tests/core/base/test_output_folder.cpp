@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 using namespace lrsm;
 namespace fs = std::filesystem;
@@ -99,6 +100,7 @@ TEST_CASE("output: a device, a file, an empty path, a place without write access
     CHECK_THROWS_AS(OutputFolder((sandbox.path / "file" / "out").string()), MachineError);
     CHECK_THROWS_AS(OutputFolder((sandbox.path / "file").string()), InputError);
     CHECK_THROWS_AS(OutputFolder(""), InputError);
+    for (const char* root : {"/", "//", "/..", "/tmp/../."}) CHECK_THROWS_AS(OutputFolder(root), InputError);
     CHECK(sandbox.entries() == 1);
 }
 
@@ -111,4 +113,48 @@ TEST_CASE("output: a full disk is a machine error and leaves nothing behind", "[
     writeFileWhole((sandbox.path / "a").string(), std::as_bytes(std::span("x", 1)));
     CHECK(contents(sandbox.path / "a") == "x");
     CHECK(sandbox.entries() == 1);
+}
+
+TEST_CASE("output: what an earlier run alone wrote goes with the commit, what is nobody's stays", "[core][output]")
+{
+    const Sandbox sandbox;
+    for (const char* name : {"a.txt", "b.txt", "mine.txt"}) std::ofstream(sandbox.path / name) << "old";
+    OutputFolder folder(sandbox.path.string());
+    folder.write("a.txt", "new");
+    folder.commit([](const fs::path&) { return std::vector<std::string>{"a.txt", "b.txt", "none.txt", "../" + std::string("mine.txt")}; });
+    CHECK(contents(sandbox.path / "a.txt") == "new");
+    CHECK(contents(sandbox.path / "mine.txt") == "old");
+    CHECK(sandbox.entries() == 2);
+}
+
+TEST_CASE("output: of two that commit to one folder at once, one is left whole", "[core][output][threads]")
+{
+    const Sandbox sandbox;
+    constexpr int kFiles = 40;
+    const auto all = [](const fs::path&) {
+        std::vector<std::string> names;
+        for (const char* side : {"first", "second"})
+            for (int i = 0; i < kFiles; ++i) names.push_back(side + std::to_string(i)), names.push_back("both" + std::to_string(i));
+        return names;
+    };
+    for (int round = 0; round < 4; ++round) {
+        const std::string target = (sandbox.path / "out").string();
+        const auto run = [&](const std::string& side) {
+            OutputFolder folder(target);
+            for (int i = 0; i < kFiles; ++i) {
+                folder.write("both" + std::to_string(i), side);
+                folder.write(side + std::to_string(i), side);
+            }
+            folder.commit(all);
+        };
+        std::thread first(run, "first"), second(run, "second");
+        first.join();
+        second.join();
+        const std::string left = contents(fs::path(target) / "both0"), gone = left == "first" ? "second" : "first";
+        for (int i = 0; i < kFiles; ++i) {
+            CHECK(contents(fs::path(target) / ("both" + std::to_string(i))) == left);
+            CHECK(fs::exists(fs::path(target) / (left + std::to_string(i))));
+            CHECK_FALSE(fs::exists(fs::path(target) / (gone + std::to_string(i))));
+        }
+    }
 }

@@ -13,6 +13,8 @@ class GltfBuilder {
     nlohmann::json json = nlohmann::json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {}}]}], "accessors": [], "bufferViews": [], "buffers": []})");
 
+    nlohmann::json moreBuffers = nlohmann::json::array();  ///< after that of the values
+
     GltfBuilder() { primitive()["attributes"]["POSITION"] = add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 5126); }
 
     nlohmann::json& primitive() { return json["meshes"][0]["primitives"][0]; }
@@ -49,6 +51,7 @@ class GltfBuilder {
         std::string binary(binary_.begin(), binary_.end());
         binary.resize((binary.size() + 3) / 4 * 4);
         whole["buffers"] = {{{"byteLength", binary.size()}}};
+        for (const nlohmann::json& buffer : moreBuffers) whole["buffers"].push_back(buffer);
         std::string text = whole.dump();
         text.resize((text.size() + 3) / 4 * 4, ' ');
         const auto word = [](std::size_t value) {

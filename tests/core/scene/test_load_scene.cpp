@@ -133,7 +133,7 @@ TEST_CASE("every mistake in a view file is one line that names the key", "[scene
         {light(R"("type": "directional", "direction": [0, -1, 0], "range": 3)"), "unknown key \"range\""},
         {light(R"("type": "spot", "position": [0, 1, 0])"), "either target or direction"},
         {light(R"("type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "outerConeAngleDegrees": 90)"), "outerConeAngleDegrees"},
-        {light(R"("type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "innerConeAngleDegrees": 45)"), "innerConeAngleDegrees"},
+        {light(R"("type": "spot", "position": [0, 1, 0], "target": [0, 0, 0], "innerConeAngleDegrees": 46)"), "innerConeAngleDegrees"},
         {light(R"("type": "spot", "position": [0, 1, 0], "target": [0, 1, 0])"), "lights[0].target: gives no direction"},
     };
     const ScratchFolder folder;

@@ -4,11 +4,11 @@ uniform float push, densityK, vRadiusScale, transmittanceCutoff;
 
 float stepOpacity(float density, float stepLength)
 {
-    float a = min(density, 1.0);
 #ifdef DENSITY
-    if (a > 0.0 && a < 1.0) return 1.0 - exp2(densityK * stepLength * log2(1.0 - a));
+    return densityOpacity(density, stepLength, densityK);
+#else
+    return min(density, 1.0);
 #endif
-    return a;
 }
 
 vec3 sampleLrsm(Light light, vec3 centre, float radius, vec3 toReceiver)
@@ -33,13 +33,14 @@ vec3 sampleLrsm(Light light, vec3 centre, float radius, vec3 toReceiver)
 #ifdef PLANT_alpha
         depth.z = normal.w = 1.0;
 #endif
-        float n = max(0.0, dot(normal.xyz, toReceiver)) / normal.w;
+        float n = normalTerm(normal, toReceiver);
 #if BACKFACE == 1
         n = n > 0.0 ? 1.0 : 0.0;
 #endif
         if (!(n > 0.0)) continue;
-        float mean = depth.x / depth.z, variance = max(depth.y / depth.z - mean * mean, varianceFloor), range = layer.depthMax - layer.depthMin;
-        float v = gaussianVisibility(mean, variance, (p.depth - layer.depthMin) / range, window / range);
+        vec2 moments = depthMoments(depth.xyz);
+        float range = layer.depthMax - layer.depthMin;
+        float v = gaussianVisibility(moments.x, moments.y, (p.depth - layer.depthMin) / range, window / range);
         outgoing += textureLod(layerRadiance, at, level).rgb * (f * v * n);
     }
     return outgoing;
