@@ -16,14 +16,14 @@ std::vector<MemoryRow> predictIsm(const MemoryQuestion& question)
     ImperfectMaps map;
     map.unorm = settings.storage == Storage::gpu;
     map.depth.resize(n * n);
-    return {{.structure = "virtual lights",
+    return {{.structure = "lights",
              .pass = "ism lights",
              .detail = std::to_string(lights),
              .predicted = lights * bytesOf(one),
              .predictedGpu = lights * gpuBytesOf(one),
              .table2 = "",
              .measured = {}},
-            {.structure = "imperfect maps",
+            {.structure = "maps",
              .pass = "ism maps",
              .detail = std::to_string(lights) + " of " + std::to_string(n) + "^2",
              .predicted = lights * bytesOf(map),

@@ -24,14 +24,14 @@ MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid)
     like.half = settings.storage == Storage::gpu;
     const std::size_t proxyGpu = 16 + (like.half ? 8u : 16u),
                       tables = (2 * grid.count() + 1) * sizeof(std::uint32_t) + grid.count() * (sizeof(CellLight) + sizeof(Aabb));
-    return {.structure = "proxies",
-            .pass = "pp cells",
-            .detail = std::string(found ? "" : "about ") + std::to_string(settings.count) + " in " + std::to_string(grid.size.x) + "x" +
-                      std::to_string(grid.size.y) + "x" + std::to_string(grid.size.z) + " cells",
-            .predicted = tables + quads * (sizeof(ProxyQuad) + 4 * sizeof(std::uint32_t)),
-            .predictedGpu = tables + quads * 4 * proxyGpu,
-            .table2 = "",
-            .measured = {}};
+    return {
+        .structure = "proxies",
+        .pass = "pp cells",
+        .detail = std::to_string(settings.count) + " in " + std::to_string(grid.size.x) + "x" + std::to_string(grid.size.y) + "x" + std::to_string(grid.size.z),
+        .predicted = tables + quads * (sizeof(ProxyQuad) + 4 * sizeof(std::uint32_t)),
+        .predictedGpu = tables + quads * 4 * proxyGpu,
+        .table2 = "",
+        .measured = {}};
 }
 
 MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, const std::string& structure, std::size_t mostACell)
@@ -58,10 +58,10 @@ std::vector<MemoryRow> predictProxies(const MemoryQuestion& question)
     const CellGrid grid = makeCellGrid(extentOf(question.scene), settings.grid);
     const std::size_t rays = std::size_t(settings.rays + (question.needs.specular ? settings.lobeRays : 0));
     std::vector<MemoryRow> rows = {cellsRow(question, grid)};
-    rows.push_back(listsRow(question, "pp march", "lists of seen cells", std::min(rays, grid.count())));
+    rows.push_back(listsRow(question, "pp march", "lists", std::min(rays, grid.count())));
     if (settings.filterRadius > 0) {
         const auto window = std::size_t(2 * settings.filterRadius + 1);
-        rows.push_back(listsRow(question, "pp filter", "filtered lists", std::min(rays * window * window, grid.count())));
+        rows.push_back(listsRow(question, "pp filter", "filtered", std::min(rays * window * window, grid.count())));
     }
     return rows;
 }
