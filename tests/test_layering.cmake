@@ -87,6 +87,15 @@ foreach(folder IN LISTS folders)
   endforeach()
 endforeach()
 
+# CTest is given the names of test cases as a list.
+file(GLOB_RECURSE tests ${ROOT}/tests/*.cpp)
+foreach(source IN LISTS tests)
+  file(STRINGS ${source} split REGEX "^TEST_CASE[^\"]*\"[^\"]*;")
+  if(split)
+    list(APPEND violations "${source}: the name of a test case has a semicolon")
+  endif()
+endforeach()
+
 foreach(violation IN LISTS violations)
   message(SEND_ERROR "${violation}")
 endforeach()

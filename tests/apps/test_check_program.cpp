@@ -79,7 +79,7 @@ TEST_CASE("check program: bad usage and bad input are one line and exit code 2",
     for (const Case& c :
          {Case{"check golden", "CANDIDATE"}, Case{"check none mine", "none"}, Case{"check golden none", "none"}, Case{"check mine golden", "manifest.json"},
           Case{"check golden empty", "no buffer in common"}, Case{"check golden mine --map bad.json", "bad.json: is no JSON"},
-          Case{"check golden mine --only nonsense", "--only nonsense"}, Case{"check golden golden --bless", "--reason"},
+          Case{"check golden mine --only nonsense", "\"nonsense\" is no pass"}, Case{"check golden golden --bless", "--reason"},
           Case{"check golden golden --bless --reason ' '", "--reason"}, Case{"check golden golden --reason x", "without --bless"},
           Case{"check golden mine --bless --reason x", "manifest.json"}, Case{"check golden golden --bless --reason x --from-golden", "leave out"}}) {
         CAPTURE(c.arguments);

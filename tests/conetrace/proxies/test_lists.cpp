@@ -71,7 +71,7 @@ TEST_CASE("visibility lists: a set of cells comes out rising, each once, and is 
     }
 }
 
-TEST_CASE("visibility filter: Eq. 4 against a union in sets; each list is in its filtered one", "[proxies]")
+TEST_CASE("visibility filter: Eq. 4 against a union in sets, each list is in its filtered one", "[proxies]")
 {
     const GBuffer g = corner();
     const Blocks blocks{g.width, g.height, kDivisor};
@@ -130,7 +130,7 @@ TEST_CASE("gathering: weights of the four lists sum to 1, are bilinear on a plan
         }
 }
 
-TEST_CASE("gathering: with equal lists each cell has the weight 1, whatever the pixel; else the sum over the lists that hold it", "[proxies]")
+TEST_CASE("gathering: with equal lists each cell has the weight 1, whatever the pixel, else the sum over the lists that hold it", "[proxies]")
 {
     const GBuffer g = corner();
     const VisibilityLists equal = randomLists(g, true), lists = randomLists(g);
