@@ -23,6 +23,7 @@ constexpr Point kPoints[] = {
     {"6 cones, 256^3, long steps", "voxel_resolution=256 rsm_resolution=512 start_voxels=2 step=0.75"},
     {"6 cones, 256^3", "voxel_resolution=256 rsm_resolution=512 start_voxels=2"},
     {"proxies, every eighth pixel", "method=proxies pp_march_divisor=8 pp_gather_divisor=4"},
+    {"caches", "method=caches aperture_scale=1 rotation=none irradiance_filter=false"},
     {"balanced", ""},
     {"proxies", "method=proxies"},
     {"6 rays", "visibility=rays aperture_scale=0.0625"},

@@ -46,9 +46,13 @@ TEST_CASE("program: tune says that nothing meets a budget, and writes the neares
     CHECK(contains(none.out, "nearest:"));
     CHECK(box.empty());
 
-    const Outcome nearest = box.run(kTinyTune + "--max-memory 0.001 --nearest -o found.json");
+    // Among the points of another method.
+    const Outcome nearest = box.run(kTinyTune + "--max-memory 0.001 --nearest --set method=vct -o found.json");
     CHECK(nearest.code == 1);
-    CHECK(TuneJson::parse(readText(box.here() / "found.json"))["tune"]["met"] == false);
+    const TuneJson found = TuneJson::parse(readText(box.here() / "found.json"));
+    CHECK(found["tune"]["met"] == false);
+    CHECK(found["settings"]["method"] == "vct");
+    CHECK(found["tune"]["points"].size() > 4);
 }
 
 TEST_CASE("program: tune refuses what it cannot promise, in one line", "[apps][tune]")

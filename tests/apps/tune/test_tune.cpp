@@ -253,7 +253,7 @@ TEST_CASE("the shipped points are valid, all different, and hold the presets tha
             CHECK_FALSE(points[i].settings == points[j].settings);
             CHECK(points[i].label != points[j].label);
         }
-    for (const char* name : {"fast", "balanced", "fine", "accurate", "rays"})
+    for (const char* name : {"fast", "caches", "balanced", "proxies", "fine", "accurate", "rays"})
         CHECK(std::any_of(points.begin(), points.end(), [&](const NamedSettings& point) { return point.settings == preset(name); }));
     CHECK_THROWS_AS(settingsFromText({}, "cone_count=6 cone_count"), InputError);
     CHECK(settingsFromText({}, "  cone_count=9  step=1 ").cones.set.count == 9);
