@@ -225,7 +225,7 @@ TEST_CASE("textures read whichever two sets of coordinates their material names"
         b.attributes()["TEXCOORD_" + std::to_string(set)] = b.add<float>({u, 0, u + 0.5f, 0, u, 0.5f}, "VEC2", 5126);
     }
     b.json["images"] = {{{"uri", "none.png"}}};
-    b.json["textures"] = {Json::object()};  // without a source: ignored, but its coordinates are numbered before
+    b.json["textures"] = Json::array({Json::object()});  // without a source: ignored, but its coordinates are numbered before
     b.json["materials"] = {
         {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 3}}}, {"metallicRoughnessTexture", {{"index", 0}, {"texCoord", 2}}}}}}};
     b.primitive()["material"] = 0;
