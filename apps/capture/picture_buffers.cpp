@@ -139,7 +139,8 @@ void toBuffers(const Gathered& gathered, std::vector<Buffer>& buffers)
 {
     copyTo(buffers, "cones.irradiance", gathered.irradiance.texels);
     copyTo(buffers, "cones.opacity", gathered.opacity.texels);
-    copyTo(buffers, "cones.lobe_weight", gathered.lobeWeight.texels);
+    // By other settings (check's hints) there may be none.
+    if (!gathered.lobeWeight.empty()) copyTo(buffers, "cones.lobe_weight", gathered.lobeWeight.texels);
 }
 
 void toBuffers(const ConeRecord& cones, std::vector<Buffer>& buffers)
