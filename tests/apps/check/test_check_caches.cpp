@@ -1,13 +1,8 @@
-#include "apps/capture/passes.h"
 #include "apps/capture/rerun.h"
 #include "apps/check/check.h"
 #include "core/settings/settings_table.h"
 #include "tests/apps/capture/capture_fixture.h"
-#include "tests/apps/check/check_fixture.h"
-
-#include "catch.h"
-
-#include <algorithm>
+#include "tests/apps/check/planted.h"
 
 using namespace lrsm;
 using namespace lrsm::test;
@@ -65,30 +60,7 @@ std::string hintOf(const std::string& assignment, const std::string& pass)
 
 TEST_CASE("check of method caches: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone", "[capture][check][caches]")
 {
-    std::vector<std::string> families;
-    for (const Buffer& buffer : cachesGolden().buffers) {
-        if (!buffer.pass.starts_with("rc")) continue;
-        CAPTURE(buffer.name);
-        families.push_back(buffer.pass);
-        Capture copy = cachesGolden();
-        for (Buffer& planted : copy.buffers)
-            if (planted.name == buffer.name) plantIn(planted);
-        const Candidate candidate = candidateOf(copy);
-        CheckOptions options;
-        options.fromGolden = true;
-        const CheckReport report = checkCandidate(cachesGolden(), candidate, options);
-        REQUIRE(report.firstWrong());
-        CHECK(report.firstWrong()->golden->name == buffer.name);
-        for (const CheckedBuffer& other : report.buffers)
-            if (other.verdict == Verdict::wrong && other.golden->name != buffer.name) {
-                CAPTURE(other.golden->name);
-                const std::vector<std::string> reads = inputsOf(other.golden->pass, cachesGolden().settings, cachesGolden().needs, 1);
-                const bool follows = other.golden->pass == buffer.pass || std::find(reads.begin(), reads.end(), buffer.pass) != reads.end();
-                CHECK(follows);
-            }
-    }
-    for (const char* family : {"rc clusters", "rc places", "rc fill", "rc convolve", "rc gather"})
-        CHECK(std::count(families.begin(), families.end(), family) >= 1);
+    findsEachDefect(cachesGolden(), "rc", [](Buffer& buffer) { plantIn(buffer); }, {"rc clusters", "rc places", "rc fill", "rc convolve", "rc gather"});
 }
 
 TEST_CASE("check of method caches: names the setting that a candidate has otherwise", "[capture][check][caches]")

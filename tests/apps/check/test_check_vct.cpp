@@ -1,14 +1,9 @@
-#include "apps/capture/passes.h"
 #include "apps/capture/rerun.h"
 #include "apps/check/check.h"
 #include "apps/check/texel_inputs.h"
 #include "core/settings/settings_table.h"
 #include "tests/apps/capture/capture_fixture.h"
-#include "tests/apps/check/check_fixture.h"
-
-#include "catch.h"
-
-#include <algorithm>
+#include "tests/apps/check/planted.h"
 
 using namespace lrsm;
 using namespace lrsm::test;
@@ -57,31 +52,7 @@ std::string hintOf(const Capture& capture)
 
 TEST_CASE("check of method vct: a defect in any buffer of its passes is found in that buffer, and in no other", "[capture][check][vct]")
 {
-    std::vector<std::string> families;
-    for (const Buffer& buffer : vctGolden().buffers) {
-        if (!buffer.pass.starts_with("vct")) continue;
-        CAPTURE(buffer.name);
-        families.push_back(buffer.pass);
-        Capture copy = vctGolden();
-        for (Buffer& planted : copy.buffers)
-            if (planted.name == buffer.name) tooMuch(planted);
-        const Candidate candidate = candidateOf(copy);
-        CheckOptions options;
-        options.fromGolden = true;
-        const CheckReport report = checkCandidate(vctGolden(), candidate, options);
-        REQUIRE(report.firstWrong());
-        CHECK(report.firstWrong()->golden->name == buffer.name);
-        CHECK(textHas(report.summary(), "pass \"" + buffer.pass + "\", " + buffer.name));
-        // The defect is one buffer's. Buffers made from it stand for the golden's inputs, and are said to be wrong for these.
-        for (const CheckedBuffer& other : report.buffers)
-            if (other.verdict == Verdict::wrong && other.golden->name != buffer.name) {
-                CAPTURE(other.golden->name);
-                const std::vector<std::string> reads = inputsOf(other.golden->pass, vctGolden().settings, vctGolden().needs, 1);
-                const bool follows = other.golden->pass == buffer.pass || std::find(reads.begin(), reads.end(), buffer.pass) != reads.end();
-                CHECK(follows);
-            }
-    }
-    for (const char* family : {"vct surface", "vct inject", "vct mips", "vct cones"}) CHECK(std::count(families.begin(), families.end(), family) > 1);
+    findsEachDefect(vctGolden(), "vct", tooMuch, {"vct surface", "vct inject", "vct mips", "vct cones"});
 }
 
 TEST_CASE("check of method vct: names the setting that a candidate has otherwise, and volumes that are exchanged", "[capture][check][vct]")
