@@ -27,7 +27,7 @@ static void checkAgainst(double expected, std::pair<double, double> measured)
     CHECK(measured.second < 0.01 * expected);
 }
 
-TEST_CASE("a point below a lit disk collects the disk's form factor", "[reference][closed-form]")
+TEST_CASE("a point below a lit disk collects the disk's form factor", "[reference][statistics][closed-form]")
 {
     // Disk of radius R = 1 at height h = 0.8, 256 corners (inscribed: its area is 1e-4 too small), lit from below at normal incidence.
     Mesh disk;
@@ -53,7 +53,7 @@ static double parallelCorner(double a, double b, double c)
            (2 * 3.14159265358979);
 }
 
-TEST_CASE("a point facing a parallel lit rectangle collects its form factor", "[reference][closed-form]")
+TEST_CASE("a point facing a parallel lit rectangle collects its form factor", "[reference][statistics][closed-form]")
 {
     // Rectangle x in [-0.5, 1.5], z in [-0.4, 0.7] at y = 1.
     const Scene scene = makeScene({rectangle({-0.5f, 1, -0.4f}, {2, 0, 0}, {0, 0, 1.1f}), rectangle({-5e-4f, 0, -5e-4f}, {0, 0, 1e-3f}, {1e-3f, 0, 0})},
@@ -62,7 +62,7 @@ TEST_CASE("a point facing a parallel lit rectangle collects its form factor", "[
     checkAgainst(0.8 * 2.0 * factor, probe(scene, lookAt({0.3f, 0.3f, 0}, {0, 0, 0}, 1e-4f), kSamples));
 }
 
-TEST_CASE("a point beside a perpendicular lit rectangle collects its form factor", "[reference][closed-form]")
+TEST_CASE("a point beside a perpendicular lit rectangle collects its form factor", "[reference][statistics][closed-form]")
 {
     // Wall in the plane x = 0.6, z in [0, 0.9], y in [0, 1.2], seen from the origin of the floor: F for a wall standing on the receiver's plane,
     // one edge level with the point (Howell's catalogue B-4): (atan(b/c) - c/sqrt(c^2+h^2) atan(b/sqrt(c^2+h^2))) / (2 pi).

@@ -225,7 +225,7 @@ TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[refe
     CHECK(flux == Approx(1.5 * angle).epsilon(0.004));
 }
 
-TEST_CASE("from the lights' side, too: the same mean in every layer, and less noise", "[reference][light-sampling]")
+TEST_CASE("from the lights' side, too: the same mean in every layer, and less noise", "[reference][statistics][light-sampling]")
 {
     struct Case {
         const char* name;
@@ -260,7 +260,7 @@ TEST_CASE("from the lights' side, too: the same mean in every layer, and less no
     requireSameMean(sides.eye.combined, sides.eye.combinedVariance, sides.both.combined, sides.both.combinedVariance, sides.covered);
 }
 
-TEST_CASE("from the lights' side, too: the same mean with all bounces", "[reference][light-sampling]")
+TEST_CASE("from the lights' side, too: the same mean with all bounces", "[reference][statistics][light-sampling]")
 {
     const int which = GENERATE(0, 1, 2);
     const Scene scene = which == 0 ? lampInBox(true) : which == 1 ? *makeBuiltinScene("cornell-box") : satinRoom();
@@ -271,7 +271,7 @@ TEST_CASE("from the lights' side, too: the same mean with all bounces", "[refere
     requireSameMean(sides.eye.combined, sides.eye.combinedVariance, sides.both.combined, sides.both.combinedVariance, sides.covered);
 }
 
-TEST_CASE("the first block is like any other: no sample has helped to make the density that it is drawn by", "[reference][light-sampling]")
+TEST_CASE("the first block is like any other: no sample has helped to make the density that it is drawn by", "[reference][statistics][light-sampling]")
 {
     // Sun through a small hole onto the floor of a room, in a wide ground: about one ray of the pilot finds it, or none, and all is left to technique a. Were
     // those rays samples too, then where the pilot has found nothing, they would find nothing either.

@@ -95,7 +95,7 @@ TEST_CASE("inside a lit sphere: irradiance rho E in one bounce, rho E / (1 - rho
     for (const float opacity : frame.opacity.texels) CHECK(opacity == 1.0f);
 }
 
-TEST_CASE("a closed box keeps its energy: all walls together collect rho Phi in one bounce and rho Phi / (1 - rho) in all", "[reference][closed-form]")
+TEST_CASE("a closed box keeps its energy: all walls together collect rho Phi in one bounce and rho Phi / (1 - rho) in all", "[reference][statistics][closed-form]")
 {
     Scene scene;
     scene.meshes = boxRoom(false);
@@ -169,7 +169,7 @@ TEST_CASE("unbiased: agrees pixel by pixel with brute force from the eye's side 
     CHECK(squares / values < 1.9);
 }
 
-TEST_CASE("the variance falls as 1/N and says how far independent pictures lie apart", "[reference][variance]")
+TEST_CASE("the variance falls as 1/N and says how far independent pictures lie apart", "[reference][statistics][variance]")
 {
     const Scene scene = spottedRoom();
     const Camera camera = lookAt({0.1f, 0.2f, 2.6f}, {0, -0.1f, 0}, 0.75f);
