@@ -95,7 +95,8 @@ TEST_CASE("inside a lit sphere: irradiance rho E in one bounce, rho E / (1 - rho
     for (const float opacity : frame.opacity.texels) CHECK(opacity == 1.0f);
 }
 
-TEST_CASE("a closed box keeps its energy: all walls together collect rho Phi in one bounce and rho Phi / (1 - rho) in all", "[reference][statistics][closed-form]")
+TEST_CASE("a closed box keeps its energy: all walls together collect rho Phi in one bounce and rho Phi / (1 - rho) in all",
+          "[reference][statistics][closed-form]")
 {
     Scene scene;
     scene.meshes = boxRoom(false);

@@ -13,9 +13,10 @@
 
 namespace lrsm::test {
 
-/// Plants a defect in one buffer after the other of the passes whose names begin with `prefix`: each is found in that very buffer, and else in what is made from
-/// it alone. Every family in `families` has been met.
-inline void findsEachDefect(const Capture& golden, const std::string& prefix, const std::function<void(Buffer&)>& plant, const std::vector<std::string>& families)
+/// Plants a defect in one buffer after the other of the passes whose names begin with `prefix`: each is found in that very buffer, and else in what is made
+/// from it alone. Every family in `families` has been met.
+inline void findsEachDefect(const Capture& golden, const std::string& prefix, const std::function<void(Buffer&)>& plant,
+                            const std::vector<std::string>& families)
 {
     std::vector<std::string> met;
     for (const Buffer& buffer : golden.buffers) {

@@ -31,7 +31,8 @@ void plantAnywhere(Buffer& buffer)
 
 }  // namespace
 
-TEST_CASE("check of method proxies: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone", "[capture][check][proxies]")
+TEST_CASE("check of method proxies: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone",
+          "[capture][check][proxies]")
 {
     findsEachDefect(goldenOf("proxies"), "pp", plantAnywhere, {"pp place", "pp light", "pp cells", "pp march", "pp filter", "pp gather"});
 }
