@@ -12,12 +12,6 @@ Vec3 cosineDirection(const Vec3& normal, UnitPoint xi);
 /// Uniform within the cone of half angle with cosine `cosHalf` about `axis`; density 1 / (2 pi (1 - cosHalf)).
 Vec3 coneDirection(const Vec3& axis, float cosHalf, UnitPoint xi);
 
-/// Mirror direction of `toViewer` about `normal`.
-inline Vec3 mirrored(const Vec3& toViewer, const Vec3& normal)
-{
-    return 2.0f * glm::dot(toViewer, normal) * normal - toViewer;
-}
-
 /// Direction of a GGX reflection (reflectLobe). May point below the surface: its lobe is then 0.
 Vec3 lobeDirection(const Surface& surface, const Vec3& toViewer, UnitPoint xi);
 

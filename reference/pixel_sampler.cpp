@@ -113,7 +113,7 @@ Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
 
     // The mean over the cone: f and p_a are both 1 / its solid angle.
     const float coneDensity = 1.0f / (2.0f * kPi * (1.0f - cosHalf_));
-    const Vec3 inCone = coneDirection(mirrored(toEye_, surface_->normal), cosHalf_, conePoints_.point(index));
+    const Vec3 inCone = coneDirection(mirrorDirection(surface_->normal, toEye_), cosHalf_, conePoints_.point(index));
     store(sample, kCone, traced(tracer, inCone, {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
     return sample;
 }

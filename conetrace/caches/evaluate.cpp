@@ -1,8 +1,8 @@
 #include "conetrace/caches/evaluate.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 #include "core/base/elementary.h"
+#include "core/scene/brdf.h"
 
 namespace lrsm {
 namespace {

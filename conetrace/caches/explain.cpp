@@ -1,9 +1,9 @@
 #include "conetrace/caches/explain.h"
 
 #include "conetrace/caches/gather.h"
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_cones.h"
 #include "conetrace/frame/pixel_text.h"
+#include "core/scene/brdf.h"
 
 namespace lrsm {
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "conetrace/frame/tiles.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -9,8 +11,8 @@ namespace lrsm {
 struct Blocks {
     int width = 0, height = 0, divisor = 1;
 
-    int columns() const { return (width + divisor - 1) / divisor; }
-    int rows() const { return (height + divisor - 1) / divisor; }
+    int columns() const { return tilesAlong(width, divisor); }
+    int rows() const { return tilesAlong(height, divisor); }
     int middle(int block, int size) const { return std::min(block * divisor + divisor / 2, size - 1); }
     std::size_t pixel(int column, int row) const { return std::size_t(middle(row, height)) * std::size_t(width) + std::size_t(middle(column, width)); }
 };

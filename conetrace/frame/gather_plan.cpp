@@ -23,6 +23,7 @@ GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, i
     const float reach = gridDiagonal(gridResolution);
     for (const ConeRing& ring : plan.cones.rings) plan.ringSchedules.push_back(makeSchedule(settings, ring.tanHalf, reach));
     if (needs.specular) {
+        plan.lobes = SpecularLobes(settings);
         const int classes = settings.specular.aperture == SpecularAperture::fixed ? 1 : kRoughnessClasses;
         for (int i = 0; i < classes; ++i) {
             const float roughness = classes > 1 ? static_cast<float>(i) / static_cast<float>(classes - 1) : 0.0f;

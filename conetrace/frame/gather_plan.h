@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conetrace/frame/cones.h"
+#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/schedule.h"
 #include "core/scene/requirements.h"
 
@@ -12,6 +13,7 @@ namespace lrsm {
 struct GatherPlan {
     ConeSet cones;
     std::vector<MarchSchedule> ringSchedules;      ///< one a ring
+    SpecularLobes lobes;                           ///< where specular cones look
     std::vector<MarchSchedule> specularSchedules;  ///< by roughness class; one when the aperture is fixed, none without specular cones
 
     /// The schedule of the specular cone for this roughness (clamped to [0, 1]; NaN counts as 0).

@@ -10,7 +10,7 @@ namespace {
 static_assert(kRotations == 16);
 
 /// Share u of the lobe within radius sqrt(u): u = 1 - (1 - p)^1.5 has more points, of less weight, in its long tail. With p itself the middle point of the
-/// last sixteenth stands for all of the tail, and a glossy floor has 5 % too much light (docs/accuracy.md).
+/// last sixteenth stands for all of the tail, and a glossy box has 5 % too much light (docs/pipeline.md).
 double shareWithin(double p)
 {
     return 1.0 - (1.0 - p) * std::sqrt(1.0 - p);

@@ -21,12 +21,6 @@ struct LobePoint {
 };
 std::array<LobePoint, 16> lobePoints();
 
-/// Towards what a mirror at the receiver would show; as long as toEye.
-inline Vec3 mirrorDirection(const Vec3& normal, const Vec3& toEye)
-{
-    return 2.0f * glm::dot(normal, toEye) * normal - toEye;
-}
-
 /// Smoother surfaces show mirrored things, which an average over 4x4 pixels would blur: a lobe of this one, half-angle 4.6 degrees, is four pixels of a
 /// picture with 50 lines.
 inline constexpr float kLeastSampledRoughness = 0.2f;
@@ -37,6 +31,7 @@ inline bool lobeIsWide(float roughness)
 
 class SpecularLobes {
   public:
+    SpecularLobes() = default;  ///< all look where a mirror does
     explicit SpecularLobes(const ConeSettings& settings);
 
     /// Are wide lobes sampled? Else all look where a mirror does.
@@ -45,7 +40,7 @@ class SpecularLobes {
     LobeDirection direction(const Vec3& normal, const Vec3& toEye, float roughness, int rotation) const;
 
   private:
-    bool sampling_;
+    bool sampling_ = false;
     std::array<LobePoint, 16> points_;
 };
 

@@ -1,8 +1,8 @@
 #include "conetrace/ism/evaluate.h"
 
 #include "conetrace/frame/cones.h"
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
+#include "core/scene/brdf.h"
 
 namespace lrsm {
 namespace {

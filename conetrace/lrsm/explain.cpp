@@ -1,6 +1,5 @@
 #include "conetrace/lrsm/explain.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/lrsm/gather_pixel.h"
@@ -57,7 +56,7 @@ std::string explainWith(const GBuffer& gbuffer, const Camera& camera, const Cone
     if (!plan.specularSchedules.empty() && gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) {
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
-        const LobeDirection lobe = SpecularLobes(world.settings).direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
         const Vec3 radiance = gatherSpecular<estimator>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
         specular = specularText(radiance);
     }

@@ -1,6 +1,5 @@
 #include "conetrace/lrsm/gather.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
@@ -28,8 +27,8 @@ struct GatherOutput {
 
 /// The pixels of one tile by Algorithm 1, one after the other.
 template <class Sampler>
-void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan,
-                const SpecularLobes& lobes, int tileX, int tileY, const GatherOutput& to, ConeCounts& counts)
+void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
+                const GatherOutput& to, ConeCounts& counts)
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
@@ -44,7 +43,7 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
         const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
-        const LobeDirection lobe = lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
         recorder = {{}, specularKeeper(to.record, pixel)};
         out.specular.texels[pixel] = gatherSpecular<Estimator::paper>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
         if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
@@ -52,12 +51,11 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 }
 
 /// `paper`, Algorithm 1 as printed: one cone at a time.
-void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const SpecularLobes& lobes,
-                 const GatherOutput& out)
+void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
     withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
         out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, lobes, tileX, tileY, out, counts); };
+            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
         });
     });
 }
@@ -65,8 +63,8 @@ void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
 /// The pixels of one tile as a batch of cones: all of them for one cone of the set, then for the next.
 class TileBatch {
   public:
-    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, const SpecularLobes& lobes, MarchBatch march)
-        : gbuffer_(gbuffer), world_(world), plan_(plan), lobes_(lobes), march_(march)
+    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, MarchBatch march)
+        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march)
     {
     }
 
@@ -140,7 +138,7 @@ class TileBatch {
             const Receiver& receiver = receivers_[k];
             const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
             const float roughness = gbuffer_.roughness.texels[pixels_[k]];
-            const LobeDirection lobe = lobes_.direction(receiver.normal, toEye, roughness, receiver.rotation);
+            const LobeDirection lobe = plan_.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
             directions[k] = lobe.direction;
             if (!to.gathered.lobeWeight.empty()) to.gathered.lobeWeight.texels[pixels_[k]] = lobe.weight;
             if (!(glm::dot(lobe.direction, receiver.geometricNormal) > 0.0f)) continue;
@@ -173,7 +171,6 @@ class TileBatch {
     const GBuffer& gbuffer_;
     const BatchWorld& world_;
     const GatherPlan& plan_;
-    const SpecularLobes& lobes_;
     const MarchBatch march_;
     std::vector<std::size_t> pixels_;  ///< covered ones of the tile; any order will do, a stage packs away what it rules out
     std::vector<Receiver> receivers_;
@@ -183,13 +180,12 @@ class TileBatch {
 };
 
 /// `slab`: tile by tile at the widest that the machine has.
-void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const SpecularLobes& lobes,
-                const GatherOutput& out, int lanes)
+void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
 {
     const BatchWorld batchWorld(world);
     const MarchBatch march = marchSlabBatch(lanes);
     out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&, batch = TileBatch(gbuffer, batchWorld, plan, lobes, march)](int tileX, int tileY, ConeCounts& counts) mutable {
+        return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
             batch.gather(camera, tileX, tileY, out, counts);
         };
     });
@@ -207,17 +203,16 @@ std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& 
 Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityPyramid& opacity, const std::vector<Lrsm>& lrsms, const Requirements& needs,
                     const ConeSettings& settings, ConeRecord* record, int lanes)
 {
-    const SpecularLobes lobes(settings);
-    Gathered out = emptyGathered(gbuffer, needs, lobes.sampling());
     if (record) *record = ConeRecord(gbuffer, needs, settings);
     const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
+    Gathered out = emptyGathered(gbuffer, needs, plan.lobes.sampling());
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
     ConeCounts counts;
     if (settings.march.estimator == Estimator::slab)
-        gatherSlab(gbuffer, camera, world, plan, lobes, {out, record, counts}, lanes);
+        gatherSlab(gbuffer, camera, world, plan, {out, record, counts}, lanes);
     else
-        gatherPaper(gbuffer, camera, world, plan, lobes, {out, record, counts});
+        gatherPaper(gbuffer, camera, world, plan, {out, record, counts});
     out.counters = countersOf(counts);
     return out;
 }

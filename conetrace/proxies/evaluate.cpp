@@ -1,7 +1,7 @@
 #include "conetrace/proxies/evaluate.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/tiles.h"
+#include "core/scene/brdf.h"
 
 #include <cmath>
 

@@ -2,10 +2,10 @@
 
 #include "conetrace/frame/cones.h"
 #include "conetrace/frame/gather.h"
-#include "conetrace/frame/lobe.h"
 #include "conetrace/proxies/lists.h"
 #include "conetrace/proxies/vpl.h"
 #include "conetrace/proxies/walk.h"
+#include "core/scene/brdf.h"
 
 /// Sparse shadow rays from a low-resolution G-buffer: [P] Sec. 3.1, Fig. 2 (c).
 namespace lrsm {

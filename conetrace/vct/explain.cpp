@@ -1,6 +1,5 @@
 #include "conetrace/vct/explain.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_cones.h"
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/vct/gather.h"
@@ -52,7 +51,7 @@ std::string explainVct(const GatherInput& input, int x, int y)
     if (input.needs.specular && gbuffer.specularColor.texels[pixel] != Vec3(0.0f)) {
         const Vec3 toEye = glm::normalize(directionToEye(input.camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
-        const LobeDirection lobe = SpecularLobes(cones).direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
         const Vec3 radiance = gatherSpecular(plan, receiver, lobe.direction, roughness, march, recorder);
         specular = specularText(radiance);
     }

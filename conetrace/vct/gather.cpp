@@ -1,6 +1,5 @@
 #include "conetrace/vct/gather.h"
 
-#include "conetrace/frame/lobe.h"
 #include "conetrace/frame/pixel_cones.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/vct/explain.h"
@@ -16,8 +15,8 @@ namespace {
 struct Silent {};
 
 /// The pixels of one tile.
-void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const GatherPlan& plan, const SpecularLobes& lobes, int tileX, int tileY,
-                        Gathered& out, ConeRecord* record, ConeCounts& counts)
+void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const GatherPlan& plan, int tileX, int tileY, Gathered& out, ConeRecord* record,
+                        ConeCounts& counts)
 {
     const GBuffer& gbuffer = input.gbuffer;
     Silent silent;
@@ -33,7 +32,7 @@ void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const G
         if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
         const Vec3 toEye = glm::normalize(directionToEye(input.camera, receiver.position));
         const float roughness = gbuffer.roughness.texels[pixel];
-        const LobeDirection lobe = lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
+        const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
         keeper = specularKeeper(record, pixel);
         out.specular.texels[pixel] = gatherSpecular(plan, receiver, lobe.direction, roughness, march, keeper);
         if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
@@ -70,13 +69,12 @@ Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume, C
 {
     const ConeSettings& cones = input.settings.cones;
     const GBuffer& gbuffer = input.gbuffer;
-    const SpecularLobes lobes(cones);
-    Gathered out = emptyGathered(gbuffer, input.needs, lobes.sampling());
     if (record) *record = ConeRecord(gbuffer, input.needs, cones);
     const GatherPlan plan = planVct(cones, input.needs, volume.resolution());
+    Gathered out = emptyGathered(gbuffer, input.needs, plan.lobes.sampling());
     const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = cones, .vct = input.settings.vct};
     const ConeCounts counts = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&](int tileX, int tileY, ConeCounts& tile) { gatherRadianceTile(input, world, plan, lobes, tileX, tileY, out, record, tile); };
+        return [&](int tileX, int tileY, ConeCounts& tile) { gatherRadianceTile(input, world, plan, tileX, tileY, out, record, tile); };
     });
     out.counters = countersOf(counts);
     return out;

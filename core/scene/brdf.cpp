@@ -251,7 +251,7 @@ Vec3 reflectLobe(const Vec3& normal, float alpha, const Vec3& toViewer, const Ve
     const Vec3 visible = disk.x * across + y * upward + z * stretched;
 
     const Vec3 half = basis * glm::normalize(Vec3(alpha * visible.x, alpha * visible.y, std::max(0.0f, visible.z)));
-    return glm::normalize(2.0f * glm::dot(toViewer, half) * half - toViewer);
+    return glm::normalize(mirrorDirection(half, toViewer));
 }
 
 }  // namespace lrsm

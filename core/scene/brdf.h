@@ -49,6 +49,12 @@ inline constexpr float kMinSpecularAlpha = 1e-3f;
 /// GGX specular lobe with Smith height-correlated shadowing and Schlick Fresnel: f_s(l, v) <n.l>. All unit, on the normal's side.
 Vec3 evaluateSpecular(const Surface& surface, const Vec3& toLight, const Vec3& toViewer);
 
+/// What a mirror of this normal shows to a viewer in this direction; as long as `toViewer`.
+inline Vec3 mirrorDirection(const Vec3& normal, const Vec3& toViewer)
+{
+    return 2.0f * glm::dot(normal, toViewer) * normal - toViewer;
+}
+
 /// `toViewer` (unit) reflected about a half vector of the GGX distribution of visible normals, chosen by a point of the unit disk (Heitz, "Sampling the GGX
 /// Distribution of Visible Normals", JCGT 7(4), 2018). Unit; may point below the surface, where the lobe is 0.
 Vec3 reflectLobe(const Vec3& normal, float alpha, const Vec3& toViewer, const Vec2& disk);

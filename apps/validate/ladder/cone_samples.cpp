@@ -1,6 +1,5 @@
 #include "apps/validate/ladder/cone_samples.h"
 
-#include "conetrace/frame/lobe.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "voxel/sample_opacity.h"
@@ -97,7 +96,7 @@ void recordPixel(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
     recorder.specular();
     const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
     const float roughness = gbuffer.roughness.texels[index];
-    const LobeDirection lobe = SpecularLobes(world.settings).direction(receiver.normal, toEye, roughness, receiver.rotation);
+    const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
     gatherSpecular<estimator>(world, sampler, plan, receiver, lobe.direction, roughness, scratch, counts, recorder);
 }
 
