@@ -88,7 +88,7 @@ int runChosen(const std::vector<lrsm::Command>& commands)
     return 0;
 }
 
-/// Where nothing catches: threads that a library wants and the system refuses, before main or inside oneTBB.
+/// Where nothing catches: threads that a library wants and the system refuses, inside oneTBB or as OpenImageIO is loaded.
 [[noreturn]] void endInOneLine() noexcept
 {
     std::string line = "unexpected: the program cannot go on";
@@ -105,18 +105,11 @@ int runChosen(const std::vector<lrsm::Command>& commands)
     ::_exit(3);
 }
 
-void catchAll()
-{
-    std::set_terminate(endInOneLine);
-}
-
-/// OpenImageIO's libraries start threads as they are loaded: this runs before their first line.
-[[gnu::section(".preinit_array"), gnu::used]] void (*const kBeforeLibraries)() = catchAll;
-
 }  // namespace
 
 int main(int argc, char** argv)
 {
+    std::set_terminate(endInOneLine);
     const lrsm::FloatState floats;
     // A file size limit then shows as an error of write(), which is reported, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);

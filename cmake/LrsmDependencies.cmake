@@ -13,7 +13,9 @@ find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
-find_package(OpenImageIO REQUIRED)
+find_package(OpenImageIO REQUIRED)  # reads pictures
+find_package(OpenEXR REQUIRED)      # writes them
+find_package(PNG REQUIRED)
 find_package(meshoptimizer REQUIRED)
 # Debian 12's libwebp brings no package file.
 if(NOT TARGET WebP::webp)

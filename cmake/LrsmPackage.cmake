@@ -38,5 +38,5 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries, headers and what 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblrsm-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libembree-dev, libglm-dev, libtinygltf-dev, libopenimageio-dev, openimageio-tools, libtbb-dev, libssl-dev, libmeshoptimizer-dev, libwebp-dev, nlohmann-json3-dev")
+    "lrsm, libembree-dev, libglm-dev, libtinygltf-dev, libopenimageio-dev, openimageio-tools, libopenexr-dev, libpng-dev, libtbb-dev, libssl-dev, libmeshoptimizer-dev, libwebp-dev, nlohmann-json3-dev")
 include(CPack)

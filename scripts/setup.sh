@@ -7,7 +7,7 @@
 set -eu
 
 packages="g++ cmake ninja-build ccache
-  libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools libtbb-dev libssl-dev libzip-dev
+  libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools libopenexr-dev libpng-dev libtbb-dev libssl-dev libzip-dev
   libdraco-dev libmeshoptimizer-dev libwebp-dev
   libcli11-dev nlohmann-json3-dev libjs-chart.js
   catch2 libbenchmark-dev librapidcheck-dev libboost-dev libmpfr-dev dpkg-dev file"

@@ -51,6 +51,8 @@ set(folders ${passes} core/decode core/imageio core/report reference apps/common
 
 # Libraries that one place alone may know: first part of the header, then where.
 set(owned_OpenImageIO "^core/imageio/")
+set(owned_ImfOutputFile.h "^core/imageio/")
+set(owned_png.h "^core/imageio/")
 set(owned_tiny_gltf.h "^core/scene/gltf")
 set(owned_draco "^core/decode/")
 set(owned_meshoptimizer.h "^core/decode/")

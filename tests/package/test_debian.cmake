@@ -30,15 +30,17 @@ function(expect_package name must must_not)
   expect_no_traces(${SCRATCH}/${name})
 endfunction()
 
-expect_package(lrsm "libembree;libopenimageio;libtbb12;libssl3;libzip[45];libmeshoptimizer;libwebp7;libstdc[+][+]6;/usr/bin/lrsm\n;/usr/share/man/man1/lrsm.1.gz\n;/usr/share/bash-completion/completions/lrsm\n;/usr/share/doc/lrsm/copyright\n;/usr/share/doc/lrsm/README.md\n;/usr/share/doc/lrsm/docs/start.md\n"
+expect_package(lrsm "libembree;libopenimageio;libtbb12;libssl3;libzip[45];libmeshoptimizer;libwebp7;libstdc[+][+]6;/usr/bin/lrsm\n;/lrsm/lrsm_picture_file.so\n;/usr/share/man/man1/lrsm.1.gz\n;/usr/share/bash-completion/completions/lrsm\n;/usr/share/doc/lrsm/copyright\n;/usr/share/doc/lrsm/README.md\n;/usr/share/doc/lrsm/docs/start.md\n"
                "\\.h\n;\\.a\n;libcatch;/usr/local")
 expect_package(liblrsm-dev "libtinygltf-dev;libembree-dev;liblrsm_voxel.a\n;/usr/include/lrsm/voxel/voxelize.h\n;/lrsmConfig.cmake\n" "/usr/bin;\\.cpp\n;liblrsm_capture")
 
 set(program ${SCRATCH}/lrsm/usr/bin/lrsm)
 run(${SCRATCH} readelf --dynamic ${program})
-if(output MATCHES "RPATH|RUNPATH")
-  message(SEND_ERROR "the program looks for libraries in folders of its own:\n${output}")
+string(REGEX MATCHALL "R(UN)?PATH[^\n]*" folders "${output}")
+if(NOT folders MATCHES "^RUNPATH[^;]*\\[\\$ORIGIN/../lib[a-z0-9_/-]*/lrsm\\]$")
+  message(SEND_ERROR "the program looks for libraries elsewhere than beside itself: ${folders}")
 endif()
 run(${SCRATCH}/user ${program} info cornell-box)
 render_hash(${program} ${SCRATCH}/user cornell-box)
 message(STATUS "composite ${hash}")
+run(${SCRATCH}/user ${program} compare frame frame)  # loads what reads pictures
