@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// EXR and PNG, by way of OpenImageIO: nothing else may include it (its 260 shared libraries cost 0.3-0.5 s at every start).
-/// Encoding gives bytes in memory, the same for the same input: no date, no host, no library version. Write them through OutputFolder.
+/// EXR and PNG: written by OpenEXR and libpng, read by OpenImageIO (picture_file.h). Encoding gives bytes in memory, the same for the same input: no date, no
+/// host, no library version. Write them through OutputFolder.
 namespace lrsm {
 
 /// Channels that belong together: "irradiance" with R, G, B; "depth" with Z. Values interleaved, row 0 at the top.
@@ -47,9 +47,9 @@ Image<Vec3> rgbLayer(const LayeredImage& image, const std::string& name, const s
 /// A layer's first channel.
 Image<float> scalarLayer(const LayeredImage& image, const std::string& name, const std::string& place);
 
-/// OpenEXR, float32, ZIP. Reads back to the same bits (NaN payloads included).
+/// float32, RLE. Reads back to the same bits (NaN payloads included).
 std::vector<std::byte> encodeExr(const LayeredImage& image);
-/// 8-bit RGB PNG, values as they are (already sRGB encoded).
+/// 8-bit RGB PNG, values as they are (already sRGB encoded), compressed fast.
 std::vector<std::byte> encodePng(const Image<Rgb8>& picture);
 
 /// What integer pictures (PNG) hold.
