@@ -199,8 +199,14 @@ enum class CacheHorizon { renormalise, black };     ///< below a cache's own hor
 enum class CacheLobe { equivalent, cutoff };        ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
 enum class CacheScoreScale { cluster, metre };      ///< length that the placement's score measures distances in
 
+enum class CacheFill { lrsm, vct, voxels };         ///< what a cache's cones see: layered maps, six-direction voxels, or isotropic ones (its paper)
+enum class CacheShadow { cone, rsm };               ///< `voxels`: of a lit voxel: a cone through the voxels, or the RSM's depth
+enum class CacheInterpolation { mean, linear };     ///< of irradiance between caches: their mean by weight, or the plane through them by weighted least squares
+
 /// Clustered pre-convolved radiance caching.
 struct CacheSettings {
+    CacheFill fill = CacheFill::lrsm;
+    CacheShadow shadow = CacheShadow::cone;
     int tile = 32;           ///< pixels along an edge of a tile, power of two, 1..256
     int resolution = 16;     ///< texels (cones) along an edge of a cache, power of two, 2..32
     float radius = 1.0f;     ///< of a cache's influence in tiles, on screen and at its depth, (0, 8]
@@ -209,6 +215,7 @@ struct CacheSettings {
     int maxCaches = 16384;   ///< beyond, tiles double, 1..2^22
     CacheMapping mapping = CacheMapping::equalArea;
     CacheHorizon horizon = CacheHorizon::renormalise;
+    CacheInterpolation interpolation = CacheInterpolation::mean;
     CacheLobe lobe = CacheLobe::equivalent;
     CacheScoreScale scoreScale = CacheScoreScale::cluster;
     Storage storage = Storage::gpu;

@@ -287,6 +287,10 @@ void addLookupRows(std::vector<SettingRow>& rows)
 /// [C]: Rehfeld, Zirr and Dachsbacher, "Clustered Pre-convolved Radiance Caching", EGPGV 2014.
 void addCacheRows(std::vector<SettingRow>& rows)
 {
+    rows.push_back(choice<&C::fill>({"rc_fill", "", "what the caches' cones see: the LRSM, the voxels of method vct, or isotropic lit voxels", "[C]: voxels"},
+                                    {"lrsm", "vct", "voxels"}));
+    rows.push_back(choice<&C::shadow>({"rc_shadow", "", "rc_fill=voxels: light of a voxel shadowed by a cone through the voxels, or by the RSM", "[C] Sec. 3.1: cone"},
+                                      {"cone", "rsm"}));
     rows.push_back(
         whole<&C::tile>({"rc_tile", "pixels", "edge of the tiles whose pixels are clustered", "[C]: about 64 for 4096 caches"}, powersOfTwo(1, 256)));
     rows.push_back(whole<&C::resolution>({"rc_resolution", "texels", "edge of a cache: a cone a texel of it", "[C] Sec. 5: 16"}, powersOfTwo(2, 32)));
@@ -295,6 +299,9 @@ void addCacheRows(std::vector<SettingRow>& rows)
         real<&C::minCosine>({"rc_min_cosine", "", "least cosine between a pixel's normal and that of a cache it reads", "ours; [C]: -1"}, below(-1, 1)));
     rows.push_back(whole<&C::minPixels>({"rc_min_pixels", "pixels", "smaller clusters join the tile's nearest of the same axis", "ours; [C]: 0"}, {0, 65536}));
     rows.push_back(whole<&C::maxCaches>({"rc_max", "caches", "with more clusters, tiles are doubled", "ours; [C]: 4096 caches"}, {1, 1 << 22}));
+    rows.push_back(choice<&C::interpolation>(
+        {"rc_interpolation", "", "irradiance between caches: their mean by weight, or a plane through them by weighted least squares", "[C] Sec. 3.3: mean"},
+        {"mean", "linear"}));
     rows.push_back(choice<&C::mapping>({"rc_mapping", "", "of a cache's hemisphere to its texels: all of one solid angle, or an octahedron's", "ours"},
                                        {"equal_area", "octahedral"}));
     rows.push_back(
