@@ -70,7 +70,7 @@ def measured(view, options, layer="irradiance"):
     folder, passes = render(view, options)
     compared = subprocess.run([LRSM, "compare", folder, truth, "--layer", layer, "--json", "--quiet"], capture_output=True, text=True, check=True)
     found = json.loads(compared.stdout)["layers"][0]
-    net = math.sqrt(max(0.0, found["rmse_over_mean"] ** 2 - (found["z_pixels"]["noise_rmse_over_mean"] or 0.0) ** 2))
+    net = math.sqrt(max(0.0, found["rmse_over_mean"] ** 2 - ((found.get("z_pixels") or {}).get("noise_rmse_over_mean") or 0.0) ** 2))
     return found["energy_ratio"], net, sum(p["cpu_milliseconds"] for p in passes if not p["name"].startswith(COMMON))
 
 
@@ -92,7 +92,7 @@ def by_views(choices):
 def fronts():
     own = ["caches", f"rc_tile={tile(32)}"]
     choices = [("`balanced`", ["balanced"]), ("`fine`", ["fine"]), ("`caches`, 32", own), ("... 16", ["caches", f"rc_tile={tile(16)}", "rc_max=65536"])]
-    by_views(choices + [(f"... `{x}`", own + [x]) for x in ("rc_interpolation=mean", "rc_radius=1.5", "rc_min_pixels=8", "rc_min_cosine=-1")])
+    by_views(choices + [(f"... `{x}`", own + [x]) for x in ("rc_radius=1.5", "rc_radius=0.75", "rc_min_pixels=8", "rc_min_cosine=-1")])
 
 
 def fills():

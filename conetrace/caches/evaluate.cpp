@@ -4,8 +4,6 @@
 #include "core/base/elementary.h"
 #include "core/scene/brdf.h"
 
-#include <cstdlib>
-
 namespace lrsm {
 namespace {
 
@@ -95,62 +93,13 @@ float lobeLevel(float roughness, int resolution, CacheLobe lobe)
     return texels > 1.0f ? 0.5f * fastLog2(texels) : 0.0f;
 }
 
-struct LinearFit {
-    Vec3 origin{0.0f};
-    Vec3 t{0.0f}, b{0.0f};
-    float perLength = 0.0f;
-    Vec2 mean{0.0f}, tilt{0.0f};
-    Vec2 at(const CacheWorld& world, std::uint32_t cache) const
-    {
-        const Vec3 d = (world.places.positions[cache] - origin) * perLength;
-        return {glm::dot(d, t), glm::dot(d, b)};
-    }
-    float weight(const CacheWorld& world, std::uint32_t cache, float w) const
-    {
-        static const bool clampIt = !std::getenv("RC_NOCLAMP");
-        const float u = 1.0f - glm::dot(tilt, at(world, cache) - mean);
-        return w * (clampIt ? std::max(u, 0.0f) : u);
-    }
-};
-LinearFit fitOf(const CacheWorld& world, int x, int y)
-{
-    const std::size_t pixel = world.gbuffer.position.index(x, y);
-    LinearFit fit;
-    fit.origin = world.gbuffer.position.texels[pixel];
-    const Mat3 frame = basisFromNormal(world.gbuffer.normal.texels[pixel]);
-    fit.t = frame[0];
-    fit.b = frame[1];
-    const std::uint32_t own = world.clusters.clusterOf.texels[pixel] - 1;
-    fit.perLength = 1.0f / (world.settings.radius * float(world.clusters.tile) * world.places.pixelSizes[own]);
-    float sum = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
-    forCachesOf(world, x, y, [&](std::uint32_t cache, float w) {
-        const Vec2 d = fit.at(world, cache);
-        sum += w;
-        fit.mean += w * d;
-        xx += w * d.x * d.x;
-        xy += w * d.x * d.y;
-        yy += w * d.y * d.y;
-    });
-    fit.mean /= sum;
-    static const float ridge = std::getenv("RC_RIDGE") ? float(std::atof(std::getenv("RC_RIDGE"))) : 0.05f;
-    xx = xx / sum - fit.mean.x * fit.mean.x + ridge;
-    yy = yy / sum - fit.mean.y * fit.mean.y + ridge;
-    xy = xy / sum - fit.mean.x * fit.mean.y;
-    const float det = xx * yy - xy * xy;
-    fit.tilt = Vec2(yy * fit.mean.x - xy * fit.mean.y, xx * fit.mean.y - xy * fit.mean.x) / det;
-    return fit;
-}
-
 CachedLight evaluatePixel(const CacheWorld& world, bool specular, int x, int y)
 {
     const std::size_t pixel = world.gbuffer.position.index(x, y);
     CachedLight light;
     Vec4 sum(0.0f);
     float weights = 0.0f;
-    const bool linear = world.settings.interpolation == CacheInterpolation::linear;
-    const LinearFit fit = linear ? fitOf(world, x, y) : LinearFit{};
     forCachesOf(world, x, y, [&](std::uint32_t cache, float weight) {
-        if (linear) weight = fit.weight(world, cache, weight);
         sum += weight * diffuseOf(world, cache, world.gbuffer.normal.texels[pixel]);
         weights += weight;
         ++light.caches;

@@ -201,7 +201,6 @@ enum class CacheScoreScale { cluster, metre };      ///< length that the placeme
 
 enum class CacheFill { lrsm, vct, voxels };         ///< what a cache's cones see: layered maps, six-direction voxels, or isotropic ones (its paper)
 enum class CacheShadow { cone, rsm };               ///< `voxels`: of a lit voxel: a cone through the voxels, or the RSM's depth
-enum class CacheInterpolation { mean, linear };     ///< of irradiance between caches: their mean by weight, or the plane through them by weighted least squares
 
 /// Clustered pre-convolved radiance caching.
 struct CacheSettings {
@@ -215,7 +214,6 @@ struct CacheSettings {
     int maxCaches = 16384;   ///< beyond, tiles double, 1..2^22
     CacheMapping mapping = CacheMapping::equalArea;
     CacheHorizon horizon = CacheHorizon::renormalise;
-    CacheInterpolation interpolation = CacheInterpolation::mean;
     CacheLobe lobe = CacheLobe::equivalent;
     CacheScoreScale scoreScale = CacheScoreScale::cluster;
     Storage storage = Storage::gpu;

@@ -299,9 +299,6 @@ void addCacheRows(std::vector<SettingRow>& rows)
         real<&C::minCosine>({"rc_min_cosine", "", "least cosine between a pixel's normal and that of a cache it reads", "ours; [C]: -1"}, below(-1, 1)));
     rows.push_back(whole<&C::minPixels>({"rc_min_pixels", "pixels", "smaller clusters join the tile's nearest of the same axis", "ours; [C]: 0"}, {0, 65536}));
     rows.push_back(whole<&C::maxCaches>({"rc_max", "caches", "with more clusters, tiles are doubled", "ours; [C]: 4096 caches"}, {1, 1 << 22}));
-    rows.push_back(choice<&C::interpolation>(
-        {"rc_interpolation", "", "irradiance between caches: their mean by weight, or a plane through them by weighted least squares", "[C] Sec. 3.3: mean"},
-        {"mean", "linear"}));
     rows.push_back(choice<&C::mapping>({"rc_mapping", "", "of a cache's hemisphere to its texels: all of one solid angle, or an octahedron's", "ours"},
                                        {"equal_area", "octahedral"}));
     rows.push_back(

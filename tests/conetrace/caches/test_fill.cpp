@@ -6,6 +6,7 @@
 #include "core/scene/builtin_scenes.h"
 #include "core/scene/shapes.h"
 #include "core/settings/settings_table.h"
+#include "tests/conetrace/caches/surfaces.h"
 #include "voxel/voxelize.h"
 
 #include "catch.h"
@@ -78,9 +79,8 @@ struct RandomVoxels {
             for (std::size_t bit = 0; bit < 64; ++bit)
                 if (bits.bricks[volume.maps[0].coordinate[place]] >> bit & 1u) base[place * 64 + bit] = Vec4(unit(random), unit(random), unit(random), 1.0f);
         prefilterRadiance(volume, {.storage = Storage::float32});
-        places = {.pixels = {0}, .positions = {Vec3(1.03f, 3.98f, 2.51f)}, .normals = {glm::normalize(Vec3(0.2f, 0.9f, -0.4f))}, .pixelSizes = {1}};
-        places.rotations = {0};
-        frameCaches(places);
+        places = test::placesOf({glm::normalize(Vec3(0.2f, 0.9f, -0.4f))});
+        places.positions = {Vec3(1.03f, 3.98f, 2.51f)};
     }
     CacheAtlas fill(const ConeSettings& cones, StepOpacity opacity, const CacheSettings& settings) const
     {
@@ -91,7 +91,7 @@ struct RandomVoxels {
 Settings smallFill(CacheFill fill)
 {
     Settings settings = preset(fill == CacheFill::voxels ? "caches-paper" : "caches");
-    settings.voxel.resolution = 64;
+    settings.voxel.resolution = 32;
     settings.rsm.resolution = 128;
     settings.caches.fill = fill;
     settings.caches.tile = 16;
@@ -208,12 +208,11 @@ TEST_CASE("rc_fill=vct: with a cache a pixel the picture is that of as many cone
 {
     const auto scene = makeBuiltinScene("cornell-box");
     Settings caches = smallFill(CacheFill::vct);
-    caches.caches.resolution = 16;
     caches.caches.tile = 1;
     caches.caches.radius = 0.5f;
     Settings cones = caches;
     cones.method = Method::vct;
-    cones.cones.set.count = 256;
+    cones.cones.set.count = 64;
     CHECK(meanGreen(renderFill(*scene, caches, 24, 18).irradiance) == Approx(meanGreen(renderFill(*scene, cones, 24, 18).irradiance)).epsilon(0.02));
 }
 
