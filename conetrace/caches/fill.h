@@ -41,6 +41,7 @@ CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, 
 ConeSettings slabSettings(const ConeSettings& settings);
 
 /// Apex and axis of a texel's cone.
-ConeRay texelCone(const CachePlaces& places, const CacheTables& tables, const VoxelGrid& grid, const MarchSettings& march, std::size_t cache, std::size_t texel);
+ConeRay texelCone(const CachePlaces& places, const CacheTables& tables, const VoxelGrid& grid, const MarchSettings& march, std::size_t cache,
+                  std::size_t texel);
 
 }  // namespace lrsm

@@ -27,8 +27,7 @@ struct IsotropicVolume {
 template <class Visit>
 void forEachArray(const IsotropicVolume& volume, Visit&& visit)
 {
-    for (std::size_t level = 0; level < volume.levels.size(); ++level)
-        visit(volume.levels[level], ArrayTraits{denseGpuBytes(volume.maps[level].resolution)});
+    for (std::size_t level = 0; level < volume.levels.size(); ++level) visit(volume.levels[level], ArrayTraits{denseGpuBytes(volume.maps[level].resolution)});
     for (const BrickMap& map : volume.maps) {
         visit(map.bricks, ArrayTraits{0, false});
         visit(map.coordinate, ArrayTraits{0, false});

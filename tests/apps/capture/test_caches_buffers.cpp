@@ -40,7 +40,10 @@ std::vector<CachesVariant> cachesVariants()
     wide.force.everything = true;
     Settings vct = small("caches", 16);
     vct.caches.fill = CacheFill::vct;
-    return {{"cornell-glossy", "caches", small("caches", 8)}, {"cornell-box", "vct", vct}, {"two-rooms", "caches-paper", small("caches-paper", 16)}, {"atrium", "wide", wide}};
+    return {{"cornell-glossy", "caches", small("caches", 8)},
+            {"cornell-box", "vct", vct},
+            {"two-rooms", "caches-paper", small("caches-paper", 16)},
+            {"atrium", "wide", wide}};
 }
 
 }  // namespace

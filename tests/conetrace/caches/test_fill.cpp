@@ -84,7 +84,8 @@ struct RandomVoxels {
     }
     CacheAtlas fill(const ConeSettings& cones, StepOpacity opacity, const CacheSettings& settings) const
     {
-        return fillFromVoxels(places, makeCacheTables(settings, Rotation::none), {.volume = volume, .grid = grid, .cones = cones, .opacity = opacity}, settings);
+        return fillFromVoxels(places, makeCacheTables(settings, Rotation::none), {.volume = volume, .grid = grid, .cones = cones, .opacity = opacity},
+                              settings);
     }
 };
 
@@ -208,12 +209,14 @@ TEST_CASE("rc_fill=vct: with a cache a pixel the picture is that of as many cone
 {
     const auto scene = makeBuiltinScene("cornell-box");
     Settings caches = smallFill(CacheFill::vct);
+    caches.voxel.resolution = 64;
+    caches.caches.resolution = 16;
     caches.caches.tile = 1;
     caches.caches.radius = 0.5f;
     Settings cones = caches;
     cones.method = Method::vct;
-    cones.cones.set.count = 64;
-    CHECK(meanGreen(renderFill(*scene, caches, 24, 18).irradiance) == Approx(meanGreen(renderFill(*scene, cones, 24, 18).irradiance)).epsilon(0.02));
+    cones.cones.set.count = 256;
+    CHECK(meanGreen(renderFill(*scene, caches, 16, 12).irradiance) == Approx(meanGreen(renderFill(*scene, cones, 16, 12).irradiance)).epsilon(0.02));
 }
 
 TEST_CASE("rc_fill: builds what it reads, holds what it predicts, and has the same bits for any number of threads", "[caches]")
