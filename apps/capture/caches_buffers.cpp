@@ -191,15 +191,16 @@ void cachedLightToBuffers(const Gathered& gathered, std::vector<Buffer>& buffers
 IsotropicVolume isotropicFromCapture(const Capture& capture)
 {
     const int n = capture.grid.resolution;
-    BitGrid occupied = nothingOccupied(capture);
     std::vector<std::vector<Vec4>> dense;
-    for (int level = 0; n >> level >= 1; ++level) {
-        dense.push_back(texelsOf(capture, mipName(kVoxels, level), cubed(n >> level)));
-        markTexels(dense.back(), level, nullptr, occupied);
-    }
+    for (int level = 0; n >> level >= 1; ++level) dense.push_back(texelsOf(capture, mipName(kVoxels, level), cubed(n >> level)));
+    BitGrid occupied = nothingOccupied(capture);
+    markTexels(dense.front(), 0, nullptr, occupied);
     IsotropicVolume volume;
     volume.preExposure = capture.preExposure;
     volume.maps = mapBricks(occupied);
+    const std::vector<std::uint64_t> before = occupied.bricks;
+    for (std::size_t level = 1; level < dense.size(); ++level) markTexels(dense[level], static_cast<int>(level), &volume.maps[level], occupied);
+    if (occupied.bricks != before) volume.maps = mapBricks(occupied);  // mips say that something is where the base says nothing is
     for (std::size_t level = 0; level < dense.size(); ++level) volume.levels.push_back(toBricks(volume.maps[level], dense[level]));
     return volume;
 }
