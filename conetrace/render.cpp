@@ -117,7 +117,7 @@ GatherMethod methodOf(const Settings& settings)
     switch (settings.method) {
     case Method::lrsm: return lrsmMethod(settings.cones.march.visibility);
     case Method::vct: return vctMethod();
-    case Method::caches: return cachesMethod();
+    case Method::caches: return cachesMethod(settings.caches);
     case Method::proxies: return proxiesMethod();
     case Method::ism: return ismMethod();
     }

@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 # Fails on an #include that is no declared dependency. Run: cmake -DROOT=<source folder> -P test_layering.cmake
 #
 # The arrows (no others): core <- voxel, lrsm, reference; voxel, lrsm <- conetrace/frame <- conetrace/lrsm <- conetrace; core/bvh <- conetrace/lrsm, reference;
-# voxel <- voxel/surface, voxel/radiance <- conetrace/vct; conetrace/frame <- conetrace/vct <- conetrace; conetrace/lrsm <- conetrace/caches <- conetrace;
+# voxel <- voxel/surface, voxel/radiance <- conetrace/vct; conetrace/frame <- conetrace/vct <- conetrace; conetrace/lrsm, conetrace/vct <- conetrace/caches <- conetrace;
 # conetrace/frame <- conetrace/proxies <- conetrace/ism <- conetrace;
 # conetrace, reference <- the commands that need libraries of their own <- the program. A folder that holds a target has a row.
 # `reference` shares scene, materials and lights with the passes, and no filtering or gathering code: so it can judge. Of visibility they share `core/bvh` alone, Embree's.
@@ -22,7 +22,7 @@ set(allowed_core/bvh core/base core/scene core/bvh)
 set(allowed_conetrace/frame core/base core/settings core/scene core/raster voxel lrsm conetrace/frame)
 set(allowed_conetrace/lrsm ${allowed_conetrace/frame} core/bvh conetrace/lrsm)
 set(allowed_conetrace/vct ${allowed_conetrace/frame} voxel/surface voxel/radiance conetrace/vct)
-set(allowed_conetrace/caches ${allowed_conetrace/lrsm} conetrace/caches)
+set(allowed_conetrace/caches ${allowed_conetrace/lrsm} ${allowed_conetrace/vct} conetrace/caches)
 set(allowed_conetrace/proxies ${allowed_conetrace/frame} conetrace/proxies)
 set(allowed_conetrace/ism ${allowed_conetrace/proxies} conetrace/ism)
 set(allowed_conetrace ${passes})

@@ -2,6 +2,7 @@
 
 #include "apps/capture/fill.h"
 #include "apps/capture/tolerances.h"
+#include "apps/capture/volume_buffers.h"
 #include "conetrace/frame/tiles.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 using Names = Catalogue::Names;
 
-constexpr const char *kIndices = "", *kAtlas = "rc.atlas", *kDiffuse = "rc.diffuse";
+constexpr const char *kIndices = "", *kAtlas = "rc.atlas", *kDiffuse = "rc.diffuse", *kVoxels = "rc.voxels";
 
 std::size_t mostCaches(const DescribedFrame& frame)
 {
@@ -37,6 +38,13 @@ std::vector<Vec4> allTexelsOf(const Capture& capture, const std::string& name)
     return texelsOf(capture, name, capture.at(name).elements() / 4);
 }
 
+void addLevel(Catalogue& out, const DescribedFrame& frame, int level, const Tolerance& tolerance)
+{
+    addVolume(out, mipName(kVoxels, level), frame.settings.voxel.resolution >> level, frame.settings.caches.storage == Storage::gpu, kRgbOpacity,
+              {"radiance times opacity and pre_exposure, and opacity, alike for all directions", kGridSpace, kRadianceUnit}, tolerance,
+              static_cast<std::uint32_t>(level));
+}
+
 void addAtlas(Catalogue& out, const DescribedFrame& frame, int level)
 {
     const CacheSettings& settings = frame.settings.caches;
@@ -48,6 +56,17 @@ void addAtlas(Catalogue& out, const DescribedFrame& frame, int level)
 }
 
 }  // namespace
+
+void describeLitVoxels(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    addLevel(out, frame, 0, tolerances::kInjected);
+}
+
+void describeVoxelRadiance(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    for (int level = 1; frame.settings.voxel.resolution >> level >= 1; ++level)
+        addLevel(out, frame, level, tolerances::layerHalf(frame.settings.caches.storage == Storage::gpu));
+}
 
 void describeClusters(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
@@ -119,6 +138,17 @@ void shapeBuffers(const CachePlaces& places, std::vector<Buffer>& buffers)
         if (buffer.pass == "rc places" || buffer.pass == "rc fill" || buffer.pass == "rc convolve") buffer.shape[0] = places.size();
 }
 
+void litToBuffers(const IsotropicVolume& volume, std::vector<Buffer>& buffers)
+{
+    if (Buffer* buffer = findBuffer(buffers, mipName(kVoxels, 0))) toDense(volume.maps.front(), volume.levels.front(), *buffer);
+}
+
+void prefilteredToBuffers(const IsotropicVolume& volume, std::vector<Buffer>& buffers)
+{
+    for (std::size_t level = 1; level < volume.levels.size(); ++level)
+        if (Buffer* buffer = findBuffer(buffers, mipName(kVoxels, static_cast<int>(level)))) toDense(volume.maps[level], volume.levels[level], *buffer);
+}
+
 void toBuffers(const PixelClusters& clusters, std::vector<Buffer>& buffers)
 {
     fit(buffers, "rc.axes", clusters.axes);
@@ -158,6 +188,23 @@ void cachedLightToBuffers(const Gathered& gathered, std::vector<Buffer>& buffers
     fit(buffers, "cones.specular", specular);
 }
 
+IsotropicVolume isotropicFromCapture(const Capture& capture)
+{
+    const int n = capture.grid.resolution;
+    std::vector<std::vector<Vec4>> dense;
+    for (int level = 0; n >> level >= 1; ++level) dense.push_back(texelsOf(capture, mipName(kVoxels, level), cubed(n >> level)));
+    BitGrid occupied = nothingOccupied(capture);
+    markTexels(dense.front(), 0, nullptr, occupied);
+    IsotropicVolume volume;
+    volume.preExposure = capture.preExposure;
+    volume.maps = mapBricks(occupied);
+    const std::vector<std::uint64_t> before = occupied.bricks;
+    for (std::size_t level = 1; level < dense.size(); ++level) markTexels(dense[level], static_cast<int>(level), &volume.maps[level], occupied);
+    if (occupied.bricks != before) volume.maps = mapBricks(occupied);  // mips say that something is where the base says nothing is
+    for (std::size_t level = 0; level < dense.size(); ++level) volume.levels.push_back(toBricks(volume.maps[level], dense[level]));
+    return volume;
+}
+
 PixelClusters clustersFromCapture(const Capture& capture)
 {
     PixelClusters clusters;
@@ -190,6 +237,7 @@ CachePlaces placesFromCapture(const Capture& capture)
     places.normals = allOf<Vec3>(capture, "rc.normal", Dtype::f4);
     places.pixelSizes = allOf<float>(capture, "rc.pixel_size", Dtype::f4);
     places.rotations = allOf<std::uint32_t>(capture, "rc.rotation", Dtype::u4);
+    frameCaches(places);
     refuseBeyond(places.pixels, std::size_t(capture.width) * std::size_t(capture.height) - 1, "rc.pixel");
     refuseBeyond(places.rotations, kRotations - 1, "rc.rotation");
     return places;

@@ -11,6 +11,7 @@
 #include "apps/common/progress.h"
 #include "apps/common/sequence.h"
 #include "conetrace/lrsm/memory.h"
+#include "conetrace/render.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"
 #include "core/settings/settings_table.h"
@@ -76,7 +77,8 @@ Settings capturedSettings(const Options& options)
     };
     if (settings.method == Method::lrsm && settings.cones.march.visibility != Visibility::cones)
         throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
-    if (settings.cones.set.gatherDivisor != 1) throw InputError("capture", "holds the passes of all pixels; take gather_divisor=1");
+    if (settings.cones.set.gatherDivisor != 1 && methodOf(settings).pixelByPixel)
+        throw InputError("capture", "holds the passes of all pixels; take gather_divisor=1");
     if (settings.method == Method::proxies && settings.proxies.gatherDivisor != 1) {
         if (chosen("pp_gather_divisor=")) throw InputError("capture", "holds the passes of all pixels; take pp_gather_divisor=1");
         settings.proxies.gatherDivisor = 1;

@@ -105,6 +105,16 @@ void keepShaped(const PassOutput& output, std::size_t, Capture& capture)
     toBuffers(*made, capture.buffers);
 }
 
+void keepLit(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* volume = output.as<IsotropicVolume>()) litToBuffers(*volume, capture.buffers);
+}
+
+void keepPrefiltered(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* volume = output.as<IsotropicVolume>()) prefilteredToBuffers(*volume, capture.buffers);
+}
+
 void keepFilled(const PassOutput& output, std::size_t, Capture& capture)
 {
     if (const auto* atlas = output.as<CacheAtlas>()) filledToBuffers(*atlas, capture.buffers);
@@ -163,13 +173,25 @@ bool filtersLists(const Settings& settings)
 {
     return ofProxies(settings) && settings.proxies.filterRadius > 0;
 }
+bool fillsCaches(const Settings& settings, CacheFill from)
+{
+    return ofCaches(settings) && settings.caches.fill == from;
+}
+bool fromVoxels(const Settings& settings)
+{
+    return fillsCaches(settings, CacheFill::voxels);
+}
 bool hasLayers(const Settings& settings)
 {
-    return ofLrsm(settings) || ofCaches(settings);
+    return ofLrsm(settings) || fillsCaches(settings, CacheFill::lrsm);
 }
-bool ofVctSurface(const Settings& settings)
+bool hasVctVolume(const Settings& settings)
 {
-    return ofVct(settings) && readsSurface(settings.vct);
+    return ofVct(settings) || fillsCaches(settings, CacheFill::vct);
+}
+bool hasVoxelSurface(const Settings& settings)
+{
+    return fromVoxels(settings) || (hasVctVolume(settings) && readsSurface(settings.vct));
 }
 bool readsVoxels(const Settings& settings)
 {
@@ -177,7 +199,7 @@ bool readsVoxels(const Settings& settings)
 }
 bool readsVoxelMips(const Settings& settings)
 {
-    return hasLayers(settings) || settings.direct.shadows == Shadows::cone;
+    return hasLayers(settings) || settings.direct.shadows == Shadows::cone || (fromVoxels(settings) && settings.caches.shadow == CacheShadow::cone);
 }
 bool comparesShadows(const Settings& settings)
 {
@@ -201,6 +223,21 @@ Families readForShadows(const Settings& settings)
     return {};
 }
 
+Families readForFill(const Settings& settings)
+{
+    switch (settings.caches.fill) {
+    case CacheFill::vct: return {"vct inject", "vct mips"};
+    case CacheFill::voxels: return {"rc light", "rc mips"};
+    case CacheFill::lrsm: break;
+    }
+    return {"voxelize", "voxel mips", "lrsm"};
+}
+
+Families readForVoxelShadows(const Settings& settings)
+{
+    return settings.caches.shadow == CacheShadow::cone ? Families{"voxel mips"} : Families{"rsm"};
+}
+
 const std::vector<std::string> kReceivers = {"gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.object_id"};
 
 // clang-format off
@@ -218,12 +255,16 @@ const std::vector<PassRow> kRows = {
      .describe = describeShadow, .record = keepShadow, .rerun = rerunShadow},
     {.family = "lrsm", .perLight = true, .stages = {"layers"}, .exists = hasLayers, .reads = {"rsm"},
      .describe = describeLrsm, .record = keepLrsm, .rerun = rerunLrsm, .makeMap = makeLrsmBase},
-    {.family = "vct surface", .stages = {"voxel"}, .exists = ofVctSurface, .reads = {"scene", "voxelize"},
+    {.family = "vct surface", .stages = {"voxel"}, .exists = hasVoxelSurface, .reads = {"scene", "voxelize"},
      .describe = describeVctSurface, .record = keep<PlacedSurface>, .rerun = rerunVctSurface},
-    {.family = "vct inject", .stages = {"vct"}, .exists = ofVct, .reads = {"scene", "voxelize", "rsm", "vct surface"},
+    {.family = "vct inject", .stages = {"vct"}, .exists = hasVctVolume, .reads = {"scene", "voxelize", "rsm", "vct surface"},
      .describe = describeVctBase, .record = keepVctBase, .makeMap = makeVctBase},
-    {.family = "vct mips", .stages = {"vct"}, .exists = ofVct, .reads = {"vct inject"},
+    {.family = "vct mips", .stages = {"vct"}, .exists = hasVctVolume, .reads = {"vct inject"},
      .describe = describeVctMips, .record = keepVctMips, .rerun = rerunVctMips},
+    {.family = "rc light", .stages = {"caches", "direct"}, .exists = fromVoxels, .reads = {"scene", "voxelize", "vct surface"}, .readsBesides = readForVoxelShadows,
+     .describe = describeLitVoxels, .record = keepLit, .makeMap = makeLitVoxels},
+    {.family = "rc mips", .stages = {"caches"}, .exists = fromVoxels, .reads = {"rc light"},
+     .describe = describeVoxelRadiance, .record = keepPrefiltered, .rerun = rerunVoxelRadiance},
     {.family = "gbuffer", .reads = {"scene"},
      .describe = describeGBuffer, .record = keep<GBuffer>, .rerun = rerunGBuffer,
      .sameTexel = {"gbuffer.object_id", "gbuffer.depth", "gbuffer.position", "gbuffer.geometric_normal", "gbuffer.normal", "gbuffer.albedo"}},
@@ -240,7 +281,7 @@ const std::vector<PassRow> kRows = {
      .describe = describeClusters, .record = keepShaped<PixelClusters>, .rerun = rerunClusters},
     {.family = "rc places", .stages = {"caches"}, .exists = ofCaches, .reads = {"gbuffer", "rc clusters"},
      .describe = describePlaces, .record = keepShaped<CachePlaces>, .rerun = rerunPlaces},
-    {.family = "rc fill", .stages = {"cones", "caches"}, .exists = ofCaches, .reads = {"tables", "rc places", "voxelize", "voxel mips", "lrsm"},
+    {.family = "rc fill", .stages = {"cones", "caches", "vct"}, .exists = ofCaches, .reads = {"tables", "rc places"}, .readsBesides = readForFill,
      .describe = describeFill, .record = keepFilled, .rerun = rerunFill},
     {.family = "rc convolve", .stages = {"caches"}, .exists = ofCaches, .reads = {"tables", "rc fill"},
      .describe = describeConvolved, .record = keepConvolved, .rerun = rerunConvolve},

@@ -47,6 +47,8 @@ void rerunVctSurface(const Capture& inputs, std::size_t light, Rerun& made);
 void makeVctBase(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
 void rerunVctMips(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunVctCones(const Capture& inputs, std::size_t light, Rerun& made);
+void makeLitVoxels(const Capture& inputs, const Settings& settings, std::size_t light, std::vector<Buffer>& outputs);
+void rerunVoxelRadiance(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunClusters(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunPlaces(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunFill(const Capture& inputs, std::size_t light, Rerun& made);

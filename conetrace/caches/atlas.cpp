@@ -37,14 +37,6 @@ Counters countersOf(const CacheAtlas& atlas)
     return counters;
 }
 
-Vec4 storedTexel(const Vec4& value, const CacheSettings& settings, ConversionCounts& counts)
-{
-    if (settings.storage == Storage::float32) return value;
-    Vec4 stored;
-    for (int k = 0; k < 4; ++k) stored[k] = roundToHalf(value[k], settings.halfRounding, counts);
-    return stored;
-}
-
 void fillCacheLevel(CacheAtlas& atlas, int level, const CacheTables& tables, const CacheSettings& settings)
 {
     const auto n = std::size_t(atlas.resolution >> level), below = 2 * n;

@@ -4,6 +4,7 @@
 #include "conetrace/frame/cone.h"
 #include "core/base/arrays.h"
 #include "core/base/formats.h"
+#include "voxel/radiance/brick_map.h"
 
 #include <cstdint>
 
@@ -36,7 +37,10 @@ void forEachArray(const CacheAtlas& atlas, Visit&& visit)
 Counters countersOf(const CacheAtlas& atlas);
 
 /// As the texture holds it.
-Vec4 storedTexel(const Vec4& value, const CacheSettings& settings, ConversionCounts& counts);
+inline Vec4 storedTexel(const Vec4& value, const CacheSettings& settings, ConversionCounts& counts)
+{
+    return storedTexel(value, settings.storage, settings.halfRounding, counts);
+}
 
 /// Mips and table of irradiance from level 0 as it is stored. A mip's texel is the mean of its four by solid angle; irradiance is pi times the mean by
 /// CacheTables::cosineShare.

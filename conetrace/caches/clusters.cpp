@@ -26,22 +26,17 @@ std::uint32_t keyOf(Entry entry)
     return static_cast<std::uint32_t>(entry >> 32);
 }
 
-struct TileClusters {
-    NormalAxes axes{};
-    std::vector<Entry> entries;  ///< sorted
-    std::uint32_t clusters = 0;
-};
-
-std::uint32_t countClusters(const std::vector<Entry>& entries)
-{
-    std::uint32_t count = 0;
-    for (std::size_t i = 0; i < entries.size(); ++i) count += i == 0 || keyOf(entries[i]) != keyOf(entries[i - 1]) ? 1 : 0;
-    return count;
-}
-
+/// A run of one key: a cluster.
 struct Group {
     std::size_t begin = 0, end = 0;
 };
+
+struct TileClusters {
+    NormalAxes axes{};
+    std::vector<Entry> entries;  ///< sorted
+    std::vector<Group> groups;   ///< of them
+};
+
 std::vector<Group> groupsOf(const std::vector<Entry>& entries)
 {
     std::vector<Group> groups;
@@ -101,7 +96,7 @@ class TileClusterer {
         if (out.entries.empty()) out.axes = {};
         std::sort(out.entries.begin(), out.entries.end());
         if (least_ > 0) joinSmall(out.entries, least_);
-        out.clusters = countClusters(out.entries);
+        out.groups = groupsOf(out.entries);
         return out;
     }
 
@@ -136,7 +131,7 @@ PixelClusters compact(const GBuffer& gbuffer, const std::vector<TileClusters>& t
     std::vector<std::size_t> firstPixel = {0};
     for (const TileClusters& one : tiles) {
         out.axes.push_back(one.axes);
-        out.tileFirst.push_back(out.tileFirst.back() + one.clusters);
+        out.tileFirst.push_back(out.tileFirst.back() + static_cast<std::uint32_t>(one.groups.size()));
         firstPixel.push_back(firstPixel.back() + one.entries.size());
     }
     out.keys.resize(out.tileFirst.back());
@@ -147,14 +142,14 @@ PixelClusters compact(const GBuffer& gbuffer, const std::vector<TileClusters>& t
         for (std::size_t t = begin; t < end; ++t) {
             const std::vector<Entry>& entries = tiles[t].entries;
             std::size_t cluster = out.tileFirst[t];
-            for (std::size_t i = 0; i < entries.size(); ++i) {
-                const std::size_t at = firstPixel[t] + i;
-                if (i == 0 || keyOf(entries[i]) != keyOf(entries[i - 1])) {
-                    out.keys[cluster] = keyOf(entries[i]);
-                    out.first[cluster++] = static_cast<std::uint32_t>(at);
+            for (const Group& group : tiles[t].groups) {
+                out.keys[cluster] = keyOf(entries[group.begin]);
+                out.first[cluster++] = static_cast<std::uint32_t>(firstPixel[t] + group.begin);
+                for (std::size_t i = group.begin; i < group.end; ++i) {
+                    const auto pixel = static_cast<std::uint32_t>(entries[i]);
+                    out.pixels[firstPixel[t] + i] = pixel;
+                    out.clusterOf.texels[pixel] = static_cast<std::uint32_t>(cluster);
                 }
-                out.pixels[at] = static_cast<std::uint32_t>(entries[i]);
-                out.clusterOf.texels[out.pixels[at]] = static_cast<std::uint32_t>(cluster);
             }
         }
     });
@@ -186,7 +181,7 @@ PixelClusters clusterPixels(const GBuffer& gbuffer, const Camera& camera, const 
             for (std::size_t t = begin; t < end; ++t) tiles[t] = cluster(static_cast<int>(t) % tilesX, static_cast<int>(t) / tilesX);
         });
         std::uint64_t count = 0;
-        for (const TileClusters& one : tiles) count += one.clusters;
+        for (const TileClusters& one : tiles) count += one.groups.size();
         // One tile cannot be doubled.
         if (count <= std::uint64_t(settings.maxCaches) || tiles.size() == 1) {
             PixelClusters clusters = compact(gbuffer, tiles, tile, tilesX, tilesY);

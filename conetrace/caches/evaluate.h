@@ -64,7 +64,7 @@ void forCachesOf(const CacheWorld& world, int x, int y, const Visit& visit)
 /// A direction in the cache's frame.
 inline Vec3 inCacheFrame(const CacheWorld& world, std::uint32_t cache, const Vec3& direction)
 {
-    return direction * basisFromNormal(world.places.normals[cache]);
+    return direction * world.places.frames[cache];
 }
 
 /// Irradiance (times the pre-exposure) of a surface with this normal, and opacity of its hemisphere.

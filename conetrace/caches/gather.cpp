@@ -1,15 +1,17 @@
 #include "conetrace/caches/gather.h"
 
 #include "conetrace/caches/explain.h"
+#include "conetrace/caches/light_voxels.h"
 #include "conetrace/caches/memory.h"
 #include "conetrace/lrsm/gather.h"
+#include "conetrace/vct/gather.h"
 
 namespace lrsm {
 namespace {
 
 constexpr PassTraits kPixelsPassOn{.perPixel = true, .resident = false};  ///< grows with the pixels, and goes into a later pass's output
 
-CacheAtlas fill(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
+CacheAtlas fillByLrsm(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
 {
     const Settings& settings = input.settings;
     const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, settings.layers, log);
@@ -17,6 +19,49 @@ CacheAtlas fill(const GatherInput& input, const CachePlaces& places, const Cache
     const NormalCdf phi(cones.gather.gaussian, cones.gather.gaussianTableSize);
     const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = cones, .phi = phi};
     return log.run("rc fill", kPixelsPassOn, [&] { return fillFromLrsm(places, tables, world, settings.caches, input.lanes); });
+}
+
+CacheAtlas fillByVct(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
+{
+    const Settings& settings = input.settings;
+    const RadianceVolume volume = buildRadiance(input, log);
+    const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = settings.cones, .vct = settings.vct};
+    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVct(places, tables, world, settings.caches); });
+}
+
+IsotropicVolume lightAndFilter(const GatherInput& input, PassLog& log)
+{
+    IsotropicVolume volume = [&] {
+        const VoxelSurface surface = buildSurface(input, log);
+        return log.run("rc light", kPassedOn, [&] { return lightVoxels(input, surface); });
+    }();
+    return log.run("rc mips", kWorldPass, [&] {
+        prefilterRadiance(volume, input.settings.caches);
+        return std::move(volume);
+    });
+}
+
+CacheAtlas fillByVoxels(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
+{
+    const Settings& settings = input.settings;
+    const IsotropicVolume volume = lightAndFilter(input, log);
+    const VoxelWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = settings.cones, .opacity = settings.vct.opacity};
+    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVoxels(places, tables, world, settings.caches); });
+}
+
+CacheAtlas fill(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
+{
+    switch (input.settings.caches.fill) {
+    case CacheFill::vct: return fillByVct(input, places, tables, log);
+    case CacheFill::voxels: return fillByVoxels(input, places, tables, log);
+    case CacheFill::lrsm: break;
+    }
+    return fillByLrsm(input, places, tables, log);
+}
+
+WorldReads readsOf(const CacheSettings& settings)
+{
+    return {.bits = true, .mips = settings.fill == CacheFill::lrsm || (settings.fill == CacheFill::voxels && settings.shadow == CacheShadow::cone)};
 }
 
 }  // namespace
@@ -49,9 +94,9 @@ Gathered gatherCaches(const GatherInput& input, PassLog& log)
     return gathered;
 }
 
-GatherMethod cachesMethod()
+GatherMethod cachesMethod(const CacheSettings& settings)
 {
-    return {.reads = {.bits = true, .mips = true}, .pixelByPixel = false, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
+    return {.reads = readsOf(settings), .pixelByPixel = false, .gather = gatherCaches, .explain = explainCaches, .predict = predictCaches};
 }
 
 }  // namespace lrsm

@@ -14,13 +14,14 @@ struct Caches {
     CacheAtlas atlas;
 };
 
-/// The passes "rc clusters", "rc places", those of the LRSMs ("lrsm 0", ...), "rc fill" and "rc convolve".
+/// The passes "rc clusters", "rc places", those of what fills the caches, "rc fill" and "rc convolve". What fills them by rc_fill: the LRSMs ("lrsm 0", ...);
+/// method vct's volume ("vct surface", "vct inject", "vct mips"); lit voxels ("vct surface", "rc light", "rc mips").
 Caches buildCaches(const GatherInput& input, PassLog& log);
 
 /// The passes above and "rc gather". Whoever watches the log is shown the Caches under "rc gather" too.
 Gathered gatherCaches(const GatherInput& input, PassLog& log);
 
 /// The line of the frame's switch.
-GatherMethod cachesMethod();
+GatherMethod cachesMethod(const CacheSettings& settings);
 
 }  // namespace lrsm

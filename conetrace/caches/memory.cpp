@@ -5,6 +5,8 @@
 #include "conetrace/caches/places.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/memory.h"
+#include "conetrace/vct/memory.h"
+#include "voxel/radiance/isotropic_volume.h"
 
 namespace lrsm {
 namespace {
@@ -39,6 +41,24 @@ Clustered clusteredOf(const MemoryQuestion& question)
     return out;
 }
 
+/// What fills the caches.
+std::vector<MemoryRow> predictFill(const MemoryQuestion& question)
+{
+    switch (question.settings.caches.fill) {
+    case CacheFill::lrsm: return predictLrsms(question);
+    case CacheFill::vct: return predictRadiance(question);
+    case CacheFill::voxels: break;
+    }
+    const int n = question.settings.voxel.resolution;
+    return {{.structure = "lit voxels",
+             .pass = "rc mips",
+             .detail = std::to_string(n) + "^3, isotropic",
+             .predicted = predictHeldBricks(question, 1, 1),
+             .predictedGpu = IsotropicVolume::predictGpuBytes(n),
+             .table2 = "",
+             .measured = {}}};
+}
+
 }  // namespace
 
 std::vector<MemoryRow> predictCaches(const MemoryQuestion& question)
@@ -47,8 +67,8 @@ std::vector<MemoryRow> predictCaches(const MemoryQuestion& question)
     const Clustered clustered = clusteredOf(question);
     const std::size_t caches = clustered.caches;
     const std::string count = std::string(question.rendered ? "" : "up to ") + std::to_string(caches) + " caches";
-    constexpr std::size_t kPlaceBytes = 2 * sizeof(std::uint32_t) + 2 * sizeof(Vec3) + sizeof(float);
-    std::vector<MemoryRow> rows = predictLrsms(question);
+    constexpr std::size_t kPlaceBytes = 2 * sizeof(std::uint32_t) + 2 * sizeof(Vec3) + sizeof(float), kFrameBytes = sizeof(Mat3);
+    std::vector<MemoryRow> rows = predictFill(question);
     rows.push_back({.structure = "clusters",
                     .pass = "rc clusters",
                     .detail = count,
@@ -59,7 +79,7 @@ std::vector<MemoryRow> predictCaches(const MemoryQuestion& question)
     rows.push_back({.structure = "cache places",
                     .pass = "rc places",
                     .detail = count,
-                    .predicted = caches * kPlaceBytes,
+                    .predicted = caches * (kPlaceBytes + kFrameBytes),
                     .predictedGpu = caches * kPlaceBytes,
                     .table2 = "",
                     .measured = {}});

@@ -69,7 +69,14 @@ CachePlaces placeCaches(const GBuffer& gbuffer, const Camera& camera, const Pixe
             places.pixelSizes[c] = camera.perspective ? spacing * gbuffer.depthLinear.texels[pixel] : spacing;
         }
     });
+    frameCaches(places);
     return places;
+}
+
+void frameCaches(CachePlaces& places)
+{
+    places.frames.clear();
+    for (const Vec3& normal : places.normals) places.frames.push_back(basisFromNormal(normal));
 }
 
 }  // namespace lrsm

@@ -10,6 +10,7 @@ struct CachePlaces {
     std::vector<Vec3> positions;        ///< world
     std::vector<Vec3> normals;          ///< geometric, unit: axis of the cache's hemisphere
     std::vector<float> pixelSizes;      ///< metres between pixels at the cache's depth
+    std::vector<Mat3> frames;           ///< basisFromNormal of the normals, made once: z is the axis
 
     std::vector<std::uint32_t> rotations;  ///< which set of directions the cones take, 0 .. kRotations - 1: alternates over blocks of 4x4 tiles
 
@@ -24,8 +25,12 @@ void forEachArray(const CachePlaces& places, Visit&& visit)
     visitAll(places.positions);
     visitAll(places.normals);
     visitAll(places.pixelSizes);
+    visit(places.frames, ArrayTraits{0, false});
     visitAll(places.rotations);
 }
+
+/// Makes `frames` from `normals`.
+void frameCaches(CachePlaces& places);
 
 /// What the score of a cluster's pixels is taken against.
 struct ClusterFrame {

@@ -81,6 +81,11 @@ Vec3 shade(const std::vector<LightSampler>& lights, std::size_t pixel, const Sur
 
 }  // namespace
 
+float shadowConeTanHalf(const DirectSettings& settings)
+{
+    return static_cast<float>(tangent(double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0)));
+}
+
 float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
 {
     const VoxelGrid& grid = opacity.base.grid;
@@ -101,8 +106,7 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
 {
     assert(!readsDepthMaps(settings) || maps.size() == scene.lights.size());
     assert(settings.shadows != Shadows::cone || opacity);
-    const double halfAperture = double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0);
-    Shadowing shadowing{.maps = maps, .opacity = opacity, .settings = settings, .tanHalfAperture = static_cast<float>(tangent(halfAperture)), .rays = {}};
+    Shadowing shadowing{.maps = maps, .opacity = opacity, .settings = settings, .tanHalfAperture = shadowConeTanHalf(settings), .rays = {}};
     if (settings.shadows == Shadows::exact)
         for (const Light& light : scene.lights) shadowing.rays.push_back(traceShadowRays(scene, gbuffer, light, needs));
 

@@ -19,6 +19,9 @@ struct DirectResult {
 DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camera& camera, std::span<const DepthMapView> maps, const OpacityPyramid* opacity,
                          const Requirements& needs, const DirectSettings& settings);
 
+/// Of the cone's half-angle by shadow_cone_aperture_degrees.
+float shadowConeTanHalf(const DirectSettings& settings);
+
 /// V by a cone towards the light, Eq. 1 front to back with nothing gathered: the transmittance left at `distance` metres (may be infinite).
 float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture);
 

@@ -41,15 +41,20 @@ void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const G
 
 }  // namespace
 
+VoxelSurface buildSurface(const GatherInput& input, PassLog& log)
+{
+    const Settings& settings = input.settings;
+    VoxelSurface surface =
+        log.run("vct surface", kPassedOn, [&] { return voxelSurface(input.scene, input.opacity.base, settings.voxel, settings.surface.textureFilter); });
+    log.show("vct surface", PlacedSurface{input.opacity.base, surface});
+    return surface;
+}
+
 RadianceVolume buildRadiance(const GatherInput& input, PassLog& log)
 {
     const Settings& settings = input.settings;
     std::optional<VoxelSurface> surface;
-    if (readsSurface(settings.vct)) {
-        surface =
-            log.run("vct surface", kPassedOn, [&] { return voxelSurface(input.scene, input.opacity.base, settings.voxel, settings.surface.textureFilter); });
-        log.show("vct surface", PlacedSurface{input.opacity.base, *surface});
-    }
+    if (readsSurface(settings.vct)) surface = buildSurface(input, log);
     RadianceVolume volume = log.run("vct inject", kPassedOn, [&] { return injectRadiance(input, surface ? &*surface : nullptr); });
     surface.reset();
     return log.run("vct mips", kWorldPass, [&] {

@@ -17,6 +17,9 @@ struct PlacedSurface {
     const VoxelSurface& surface;
 };
 
+/// The pass "vct surface", which radiance caches of voxels have too.
+VoxelSurface buildSurface(const GatherInput& input, PassLog& log);
+
 /// The passes "vct surface" (where the injection reads one), "vct inject" and "vct mips".
 RadianceVolume buildRadiance(const GatherInput& input, PassLog& log);
 

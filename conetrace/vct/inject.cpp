@@ -1,9 +1,8 @@
 #include "conetrace/vct/inject.h"
 
-#include "conetrace/frame/shadow_map.h"
+#include "conetrace/vct/light_surfels.h"
 #include "core/base/parallel.h"
 #include "core/scene/exposure.h"
-#include "core/scene/light.h"
 #include "lrsm/texel_area.h"
 
 #include <algorithm>
@@ -15,21 +14,6 @@ namespace {
 
 constexpr std::size_t kGrain = 8192;
 constexpr std::uint32_t kNowhere = ~std::uint32_t(0);
-
-/// Light of one occupied voxel, lights added.
-struct VoxelLight {
-    Vec3 radiance{0.0f};
-    Vec3 normal{0.0f};  ///< times luminance
-    float luminance = 0.0f;
-
-    void add(const Vec3& lightRadiance, const Vec3& lightNormal)
-    {
-        const float weight = glm::dot(lightRadiance, Vec3(0.2126f, 0.7152f, 0.0722f));
-        radiance += lightRadiance;
-        normal += weight * lightNormal;
-        luminance += weight;
-    }
-};
 
 struct Placement {
     std::uint64_t texels = 0, moved = 0, lost = 0;
@@ -128,32 +112,6 @@ void injectMap(const Rsm& rsm, const BitGrid& bits, const VoxelIndex& index, con
     });
 }
 
-void lightSurfels(const GatherInput& input, const VoxelSurface& surface, float preExposure, std::vector<VoxelLight>& lights)
-{
-    const BitGrid& bits = input.opacity.base;
-    const std::vector<LightSampler> samplers(input.scene.lights.begin(), input.scene.lights.end());
-    std::vector<DepthMapView> depths;
-    for (const Rsm& rsm : input.rsms) depths.emplace_back(rsm);
-    parallelFor(bits.bricks.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t brick = begin; brick < end; ++brick)
-            forEachBit(bits.bricks[brick], [&](int bit) {
-                const std::size_t voxel = surface.index.at(bits, brick, bit);
-                const VoxelSurfel& surfel = surface.surfels[voxel];
-                const Vec3 p = bits.grid.origin + (Vec3(voxelOf(bits, brick, bit)) + surfel.position) * bits.grid.voxelSize;
-                const bool cancels = normalCancels(surfel);
-                for (std::size_t k = 0; k < samplers.size(); ++k) {
-                    const LightSample light = samplers[k](p);
-                    const Vec3 facing = cancels ? light.toLight : glm::normalize(surfel.normal);
-                    const float nDotL = cancels ? kMeanCosine : glm::dot(facing, light.toLight);
-                    if (light.irradiance == Vec3(0.0f) || !(nDotL > 0.0f)) continue;
-                    const float visible = shadowFromMap(depths[k], {p, facing}, input.settings.direct.depthBiasTexels);
-                    const Vec3 radiance = reflectedRadiance(surfel.albedo, light.irradiance, nDotL) * (visible * preExposure);
-                    lights[voxel].add(radiance, cancels ? Vec3(0.0f) : surfel.normal);
-                }
-            });
-    });
-}
-
 /// Into the texels of level 0.
 void store(const std::vector<VoxelLight>& lights, const BitGrid& bits, const VoxelIndex& index, const VctSettings& settings, RadianceVolume& volume)
 {
@@ -183,7 +141,11 @@ RadianceVolume injectRadiance(const GatherInput& input, const VoxelSurface* surf
 
     std::vector<VoxelLight> lights(index.count());
     if (settings.injection == Injection::voxel) {
-        lightSurfels(input, *surface, volume.preExposure, lights);
+        std::vector<DepthMapView> depths;
+        for (const Rsm& rsm : input.rsms) depths.emplace_back(rsm);
+        lightSurfels(input, *surface, volume.preExposure, lights, [&](std::size_t light, const ShadowReceiver& receiver, const LightSample&) {
+            return shadowFromMap(depths[light], receiver, input.settings.direct.depthBiasTexels);
+        });
     } else {
         Placement placed;
         const VoxelSurface* area = settings.injectionWeight == InjectionWeight::area ? surface : nullptr;

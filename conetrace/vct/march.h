@@ -5,8 +5,16 @@
 #include "core/base/elementary.h"
 #include "voxel/radiance/sample_radiance.h"
 
-/// One cone through a RadianceVolume, front to back.
+/// One cone through radiance in voxels, front to back.
 namespace lrsm {
+
+/// What a march keeps to, whatever volume it looks into.
+struct RadianceMarch {
+    const VoxelGrid& grid;
+    const MarchSettings& settings;
+    StepOpacity opacity;  ///< of a texel over a step
+    float preExposure;    ///< of the volume's radiance
+};
 
 /// Everything that a cone reads.
 struct VctWorld {
@@ -36,22 +44,22 @@ inline float opacityOver(float a, float lengthInTexels, StepOpacity opacity)
 
 /// T behind a step. `exponential` is Eq. 1's product; `linear` sums the opacities, T = max(0, 1 - sum a dt/D), so that a wall, whose texels' opacities sum to
 /// 1 along any ray across it, is just opaque.
-inline float transmittanceBehind(float transmittance, float a, float lengthInTexels, const VctWorld& world)
+inline float transmittanceBehind(float transmittance, float a, float lengthInTexels, const RadianceMarch& march)
 {
-    if (world.cones.march.transmittance == TransmittanceModel::linear)
-        return std::max(0.0f, transmittance - (world.vct.opacity == StepOpacity::step ? a * lengthInTexels : a));
-    return transmittance * (1.0f - opacityOver(a, lengthInTexels, world.vct.opacity));
+    if (march.settings.transmittance == TransmittanceModel::linear)
+        return std::max(0.0f, transmittance - (march.opacity == StepOpacity::step ? a * lengthInTexels : a));
+    return transmittance * (1.0f - opacityOver(a, lengthInTexels, march.opacity));
 }
 
 /// I = sum of dT rgb / a, dT what a step takes of the transmittance: rgb / a is the mean radiance of what it meets. In the scene's units.
 /// Where all that the cone meets has one radiance, I is that times the opacity, within kVctMarchMaxError relatively.
 inline constexpr float kVctMarchMaxError = 2e-6f;
-template <class Recorder>
-ConeResult marchRadiance(const VctWorld& world, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts, Recorder& recorder)
+template <class LookUp, class Recorder>
+ConeResult marchRadiance(const RadianceMarch& march, const LookUp& lookUp, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts,
+                         Recorder& recorder)
 {
-    const MarchSettings& settings = world.cones.march;
-    const RadianceLookup lookUp(world.volume, world.vct, settings.filterFraction, ray.direction);
-    const float exit = gridExit(ray.originVoxels, ray.direction, world.grid.resolution);
+    const MarchSettings& settings = march.settings;
+    const float exit = gridExit(ray.originVoxels, ray.direction, march.grid.resolution);
 
     ConeResult result;
     float transmittance = 1.0f;
@@ -62,17 +70,26 @@ ConeResult marchRadiance(const VctWorld& world, const ConeRay& ray, const MarchS
         ++counts.voxelTaps;
         const Vec3 offset = ray.direction * step.middle + ray.receiverNormal * (settings.push * (0.5f * step.diameter));
         const Vec4 sample = lookUp(ray.originVoxels + offset, step.level);
-        const float behind = sample.w > 0.0f ? transmittanceBehind(transmittance, sample.w, (step.end - step.begin) / step.tapWidth, world) : transmittance;
+        const float behind = sample.w > 0.0f ? transmittanceBehind(transmittance, sample.w, (step.end - step.begin) / step.tapWidth, march) : transmittance;
         if constexpr (requires { recorder.step(VctStep{}); })
-            recorder.step(VctStep{&step, ray.originWorld + offset * world.grid.voxelSize, sample, transmittance - behind, transmittance});
+            recorder.step(VctStep{&step, ray.originWorld + offset * march.grid.voxelSize, sample, transmittance - behind, transmittance});
         if (!(sample.w > 0.0f)) continue;
         result.radiance += Vec3(sample) * ((transmittance - behind) / sample.w);
         transmittance = behind;
         if (transmittance < settings.transmittanceCutoff) break;
     }
-    result.radiance /= world.volume.preExposure;
+    result.radiance /= march.preExposure;
     result.opacity = 1.0f - transmittance;
     return result;
+}
+
+/// Through a RadianceVolume.
+template <class Recorder>
+ConeResult marchRadiance(const VctWorld& world, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts, Recorder& recorder)
+{
+    const MarchSettings& settings = world.cones.march;
+    const RadianceMarch march{.grid = world.grid, .settings = settings, .opacity = world.vct.opacity, .preExposure = world.volume.preExposure};
+    return marchRadiance(march, RadianceLookup(world.volume, world.vct, settings.filterFraction, ray.direction), ray, schedule, counts, recorder);
 }
 
 }  // namespace lrsm

@@ -4,9 +4,8 @@
 #include "voxel/voxelize.h"
 
 namespace lrsm {
-namespace {
 
-std::size_t heldBytes(const MemoryQuestion& question)
+std::size_t predictHeldBricks(const MemoryQuestion& question, int base, int above)
 {
     const VoxelSettings& voxels = question.settings.voxel;
     switch (question.unknowns) {
@@ -14,15 +13,13 @@ std::size_t heldBytes(const MemoryQuestion& question)
         BitGrid nothing;
         nothing.grid.resolution = voxels.resolution;
         nothing.bricks.assign(predictBitGridBytes(voxels.resolution) / sizeof(std::uint64_t), 0);
-        return predictRadianceBytes(mapBricks(nothing));
+        return predictBrickBytes(mapBricks(nothing), base, above);
     }
-    case Unknowns::most: return predictDenseRadianceBytes(voxels.resolution);
+    case Unknowns::most: return predictDenseBrickBytes(voxels.resolution, base, above);
     case Unknowns::found: break;
     }
-    return predictRadianceBytes(mapBricks(voxelize(question.scene, voxels)));
+    return predictBrickBytes(mapBricks(voxelize(question.scene, voxels)), base, above);
 }
-
-}  // namespace
 
 std::vector<MemoryRow> predictRadiance(const MemoryQuestion& question)
 {
@@ -30,7 +27,7 @@ std::vector<MemoryRow> predictRadiance(const MemoryQuestion& question)
     return {{.structure = "vct",
              .pass = "vct mips",
              .detail = std::to_string(n) + "^3, six directions",
-             .predicted = heldBytes(question),
+             .predicted = predictHeldBricks(question, 2, kTravelDirections),
              .predictedGpu = RadianceVolume::predictGpuBytes(n),
              .table2 = n == 512 ? "3 GB" : "",
              .measured = {}}};

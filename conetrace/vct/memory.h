@@ -8,4 +8,7 @@ namespace lrsm {
 /// are held: Unknowns::found voxelizes the scene to count them, `most` takes all, `least` none.
 std::vector<MemoryRow> predictRadiance(const MemoryQuestion& question);
 
+/// Bytes of a volume over the scene's bricks, with `base` texels a place in level 0 and `above` in the others, as far as is known.
+std::size_t predictHeldBricks(const MemoryQuestion& question, int base, int above);
+
 }  // namespace lrsm

@@ -199,8 +199,13 @@ enum class CacheHorizon { renormalise, black };     ///< below a cache's own hor
 enum class CacheLobe { equivalent, cutoff };        ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
 enum class CacheScoreScale { cluster, metre };      ///< length that the placement's score measures distances in
 
+enum class CacheFill { lrsm, vct, voxels };         ///< what a cache's cones see: layered maps, six-direction voxels, or isotropic ones (its paper)
+enum class CacheShadow { cone, rsm };               ///< `voxels`: of a lit voxel: a cone through the voxels, or the RSM's depth
+
 /// Clustered pre-convolved radiance caching.
 struct CacheSettings {
+    CacheFill fill = CacheFill::lrsm;
+    CacheShadow shadow = CacheShadow::cone;
     int tile = 32;           ///< pixels along an edge of a tile, power of two, 1..256
     int resolution = 16;     ///< texels (cones) along an edge of a cache, power of two, 2..32
     float radius = 1.0f;     ///< of a cache's influence in tiles, on screen and at its depth, (0, 8]

@@ -287,6 +287,10 @@ void addLookupRows(std::vector<SettingRow>& rows)
 /// [C]: Rehfeld, Zirr and Dachsbacher, "Clustered Pre-convolved Radiance Caching", EGPGV 2014.
 void addCacheRows(std::vector<SettingRow>& rows)
 {
+    rows.push_back(choice<&C::fill>({"rc_fill", "", "what the caches' cones see: the LRSM, the voxels of method vct, or isotropic lit voxels", "[C]: voxels"},
+                                    {"lrsm", "vct", "voxels"}));
+    rows.push_back(choice<&C::shadow>({"rc_shadow", "", "rc_fill=voxels: light of a voxel shadowed by a cone through the voxels, or by the RSM", "[C] Sec. 3.1: cone"},
+                                      {"cone", "rsm"}));
     rows.push_back(
         whole<&C::tile>({"rc_tile", "pixels", "edge of the tiles whose pixels are clustered", "[C]: about 64 for 4096 caches"}, powersOfTwo(1, 256)));
     rows.push_back(whole<&C::resolution>({"rc_resolution", "texels", "edge of a cache: a cone a texel of it", "[C] Sec. 5: 16"}, powersOfTwo(2, 32)));

@@ -62,6 +62,20 @@ Vec4 toVec4(Float4 v)
     return {v[0], v[1], v[2], v[3]};
 }
 
+/// Linear between the two levels about `level`.
+template <class LookUp>
+Vec4 betweenLevels(const LookUp& lookUp, const Vec3& pVoxels, float level, int levels, bool fixed8)
+{
+    const float clamped = std::clamp(level, 0.0f, float(levels - 1));
+    const float exact = fixed8 ? std::floor(clamped * 256.0f + 0.5f) * (1.0f / 256.0f) : clamped;
+    const int lower = int(exact);
+    const float f = exact - float(lower);
+    const Vec4 fine = lookUp.atLevel(pVoxels, lower);
+    if (!(f > 0.0f)) return fine;
+    const Vec4 coarse = lookUp.atLevel(pVoxels, lower + 1);
+    return fine + (coarse - fine) * f;
+}
+
 }  // namespace
 
 RadianceLookup::RadianceLookup(const RadianceVolume& volume, const VctSettings& settings, FilterFraction fraction, const Vec3& direction)
@@ -102,14 +116,20 @@ Vec4 RadianceLookup::atLevel(const Vec3& pVoxels, int level) const
 
 Vec4 RadianceLookup::operator()(const Vec3& pVoxels, float level) const
 {
-    const float clamped = std::clamp(level, 0.0f, float(volume_.levels() - 1));
-    const float exact = fixed8_ ? std::floor(clamped * 256.0f + 0.5f) * (1.0f / 256.0f) : clamped;
-    const int lower = int(exact);
-    const float f = exact - float(lower);
-    const Vec4 fine = atLevel(pVoxels, lower);
-    if (!(f > 0.0f)) return fine;
-    const Vec4 coarse = atLevel(pVoxels, lower + 1);
-    return fine + (coarse - fine) * f;
+    return betweenLevels(*this, pVoxels, level, volume_.levels(), fixed8_);
+}
+
+Vec4 IsotropicLookup::atLevel(const Vec3& pVoxels, int level) const
+{
+    const Tap tap = tapAt(volume_.maps[std::size_t(level)], pVoxels * (1.0f / float(1 << level)), fixed8_);
+    if (tap.empty) return Vec4(0.0f);
+    const std::vector<Vec4>& texels = volume_.levels[std::size_t(level)];
+    return toVec4(blended(tap, [&](std::size_t k) { return texelAt(texels, tap.texel[k]); }));
+}
+
+Vec4 IsotropicLookup::operator()(const Vec3& pVoxels, float level) const
+{
+    return betweenLevels(*this, pVoxels, level, static_cast<int>(volume_.levels.size()), fixed8_);
 }
 
 }  // namespace lrsm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "voxel/radiance/isotropic_volume.h"
 #include "voxel/radiance/radiance_volume.h"
 
 namespace lrsm {
@@ -25,6 +26,20 @@ class RadianceLookup {
     Vec3 direction_;
     std::array<int, 3> faces_{};  ///< direction of travel of each axis
     Vec3 weights_{0.0f};
+};
+
+/// How any cone sees an isotropic volume: quadrilinear, texel centres at +0.5, border 0.
+class IsotropicLookup {
+  public:
+    IsotropicLookup(const IsotropicVolume& volume, FilterFraction fraction) : volume_(volume), fixed8_(fraction == FilterFraction::fixed8) {}
+
+    /// Radiance (premultiplied) and opacity; pVoxels in base voxels, `level` clamped to the volume's.
+    Vec4 operator()(const Vec3& pVoxels, float level) const;
+    Vec4 atLevel(const Vec3& pVoxels, int level) const;
+
+  private:
+    const IsotropicVolume& volume_;
+    bool fixed8_;
 };
 
 /// Error of a lookup's opacity, of what the stored texels say, and of its radiance relative to the largest texel's.

@@ -38,7 +38,12 @@ std::vector<CachesVariant> cachesVariants()
     wide.cones.set.rotation = Rotation::strata;
     wide.cones.set.filter = true;
     wide.force.everything = true;
-    return {{"cornell-glossy", "caches", small("caches", 8)}, {"two-rooms", "caches-paper", small("caches-paper", 16)}, {"atrium", "wide", wide}};
+    Settings vct = small("caches", 16);
+    vct.caches.fill = CacheFill::vct;
+    return {{"cornell-glossy", "caches", small("caches", 8)},
+            {"cornell-box", "vct", vct},
+            {"two-rooms", "caches-paper", small("caches-paper", 16)},
+            {"atrium", "wide", wide}};
 }
 
 }  // namespace
@@ -58,6 +63,12 @@ TEST_CASE("caches buffers: through files and back every pass has the hash that t
     CHECK((clusters.tile > variant.settings.caches.tile) == (variant.name == "wide"));
     CHECK(hashOf(clusters) == expected["rc clusters"]);
     CHECK(hashOf(placesFromCapture(capture)) == expected["rc places"]);
+    if (expected.contains("rc mips")) {
+        IsotropicVolume volume = isotropicFromCapture(capture);
+        CHECK(hashOf(volume) == expected["rc mips"]);
+        volume.levels.resize(1);
+        CHECK(hashOf(volume) == expected["rc light"]);
+    }
     CHECK(hashOf(filledFromCapture(capture)) == expected["rc fill"]);
     CHECK(hashOf(atlasFromCapture(capture)) == expected["rc convolve"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["rc gather"]);

@@ -23,6 +23,21 @@ const Capture& cachesGolden()
     return capture;
 }
 
+/// The paper's own fill.
+const Capture& voxelsGolden()
+{
+    static const Capture capture = [] {
+        Settings s = preset("caches-paper");
+        s.voxel.resolution = 16;
+        s.rsm.resolution = 64;
+        s.caches.tile = 16;
+        s.caches.resolution = 4;
+        s.direct.shadows = Shadows::hard;
+        return record("cornell-box", s).capture;
+    }();
+    return capture;
+}
+
 /// Half as much again of every number; of indices, each the one before it (which none points beyond), of cluster ranges an own edge moved.
 void plantIn(Buffer& buffer)
 {
@@ -61,6 +76,11 @@ std::string hintOf(const std::string& assignment, const std::string& pass)
 TEST_CASE("check of method caches: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone", "[capture][check][caches]")
 {
     findsEachDefect(cachesGolden(), "rc", [](Buffer& buffer) { plantIn(buffer); }, {"rc clusters", "rc places", "rc fill", "rc convolve", "rc gather"});
+}
+
+TEST_CASE("check of method caches: the same of the voxels that fill them", "[capture][check][caches]")
+{
+    for (const char* pass : {"rc light", "rc mips", "rc fill"}) findsEachDefect(voxelsGolden(), pass, [](Buffer& buffer) { plantIn(buffer); }, {pass});
 }
 
 TEST_CASE("check of method caches: names the setting that a candidate has otherwise", "[capture][check][caches]")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conetrace/caches/places.h"
 #include "conetrace/frame/gbuffer.h"
 
 namespace lrsm::test {
@@ -29,6 +30,20 @@ GBuffer gbufferOf(int width, int height, const Surface& surface)
             g.objectId.texels[pixel] = 1;
         }
     return g;
+}
+
+/// Caches that stand nowhere in particular, with these axes.
+inline CachePlaces placesOf(const std::vector<Vec3>& normals)
+{
+    const std::size_t count = normals.size();
+    CachePlaces places;
+    places.pixels.assign(count, 0);
+    places.positions.assign(count, Vec3(0.0f));
+    places.normals = normals;
+    places.pixelSizes.assign(count, 1.0f);
+    places.rotations.assign(count, 0);
+    frameCaches(places);
+    return places;
 }
 
 }  // namespace lrsm::test

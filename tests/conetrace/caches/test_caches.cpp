@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/builtin_scenes.h"
 #include "core/settings/settings_table.h"
+#include "tests/conetrace/caches/surfaces.h"
 #include "voxel/voxelize.h"
 
 #include "catch.h"
@@ -149,7 +150,7 @@ TEST_CASE("method caches: light about a direction is linear between levels, and 
     const PixelClusters clusters;
     const CacheSettings settings{.resolution = 8, .mapping = GENERATE(CacheMapping::equalArea, CacheMapping::octahedral)};
     const Vec3 axis = glm::normalize(Vec3(0.3f, -0.5f, 0.7f));
-    const CachePlaces places{.pixels = {0, 0}, .positions = {Vec3(0), Vec3(0)}, .normals = {Vec3(0, 1, 0), axis}, .pixelSizes = {1, 1}, .rotations = {0, 0}};
+    const CachePlaces places = test::placesOf({Vec3(0, 1, 0), axis});
     const CacheTables tables = makeCacheTables(settings, Rotation::none);
     CacheAtlas atlas;
     atlas.resolution = 8;

@@ -241,3 +241,51 @@ TEST_CASE("caches: every covered pixel of every scene reads one, within two tile
         }
     }
 }
+
+TEST_CASE("caches: as many on a grid over the picture leave more pixels without one that faces as they do ([C] Fig. 6)", "[caches]")
+{
+    std::size_t clusteredWithout = 0, gridWithout = 0, covered = 0;
+    for (const char* name : {"cornell-box", "atrium"}) {
+        const Scene scene = *makeBuiltinScene(name);
+        const GBuffer g = seen(scene, 160, 90);
+        const CacheSettings settings{.tile = 8, .radius = 2.0f};
+        const PixelClusters clusters = clusterPixels(g, scene.cameras[0], settings);
+        const CachePlaces places = placeCaches(g, scene.cameras[0], clusters, settings, Rotation::none);
+
+        // A cluster a square, of as many squares.
+        const float pitch = std::sqrt(float(clusters.pixels.size()) / float(places.size()));
+        PixelClusters squares;
+        squares.tile = settings.tile;
+        for (float y = 0.5f * pitch; y < 90.0f; y += pitch)
+            for (float x = 0.5f * pitch; x < 160.0f; x += pitch) {
+                const std::size_t pixel = g.position.index(int(x), int(y));
+                if (g.covered(pixel)) squares.pixels.push_back(std::uint32_t(pixel));
+            }
+        squares.keys.resize(squares.pixels.size());
+        squares.first.resize(squares.pixels.size() + 1);
+        std::iota(squares.first.begin(), squares.first.end(), 0u);
+        const CachePlaces grid = placeCaches(g, scene.cameras[0], squares, settings, Rotation::none);
+        CHECK(double(grid.size()) == Approx(double(places.size())).epsilon(0.15));
+
+        const auto without = [&](const CachePlaces& all) {
+            const CacheAtlas none;
+            const CacheWorld world{.gbuffer = g, .camera = scene.cameras[0], .clusters = clusters, .places = all, .atlas = none, .settings = settings};
+            std::size_t count = 0;
+            for (std::size_t pixel = 0; pixel < g.objectId.texels.size(); ++pixel) {
+                const Vec3 position = g.position.texels[pixel], normal = g.normal.texels[pixel];
+                bool any = !g.covered(pixel);
+                for (std::uint32_t cache = 0; cache < all.size() && !any; ++cache)
+                    any =
+                        glm::dot(normal, all.normals[cache]) >= 0.5f && cacheWeight(world, cache, int(pixel % 160), int(pixel / 160), position).least() > 0.0f;
+                count += any ? 0 : 1;
+            }
+            return count;
+        };
+        clusteredWithout += without(places);
+        gridWithout += without(grid);
+        covered += clusters.pixels.size();
+    }
+    CAPTURE(clusteredWithout, gridWithout, covered);
+    CHECK(clusteredWithout * 4 < gridWithout);
+    CHECK(clusteredWithout * 1000 < covered);
+}

@@ -2,6 +2,7 @@
 
 #include "conetrace/caches/atlas.h"
 #include "conetrace/caches/evaluate.h"
+#include "tests/conetrace/caches/surfaces.h"
 
 #include "catch.h"
 
@@ -158,7 +159,7 @@ TEST_CASE("caches convolved: irradiance of a half-lit hemisphere, of L = cos and
     const GBuffer nothing;
     const Camera camera;
     const PixelClusters clusters;
-    const CachePlaces places{.pixels = {0}, .positions = {Vec3(0)}, .normals = {Vec3(0, 0, 1)}, .pixelSizes = {1}, .rotations = {0}};
+    const CachePlaces places = test::placesOf({Vec3(0, 0, 1)});
     const auto irradiance = [&](const Vec3& normal, const auto& radiance) {
         const CacheAtlas atlas = cacheThatSees(settings, tables, radiance);
         const CacheWorld world{.gbuffer = nothing, .camera = camera, .clusters = clusters, .places = places, .atlas = atlas, .settings = settings};
