@@ -14,6 +14,7 @@
 #include "core/base/float_state.h"
 #include "core/scene/check_scene.h"
 #include "core/settings/settings_table.h"
+#include "voxel/cascades.h"
 #include "voxel/voxelize.h"
 
 namespace lrsm {
@@ -32,12 +33,27 @@ struct World {
     }
 };
 
-World buildWorld(const Scene& scene, const Requirements& needs, const Settings& settings, const WorldReads& reads, PassLog& log)
+/// The voxels, coarsest cascade first. Each has its passes: those of a lone grid, the finer ones by number.
+OpacityPyramid buildVoxels(const Scene& scene, const Camera& camera, const VoxelSettings& settings, bool mips, PassLog& log)
+{
+    OpacityPyramid coarser;
+    const std::vector<VoxelGrid> grids = gridsOf(scene, settings, camera.position);
+    for (int finer = 0; finer < settings.cascades; ++finer) {
+        OpacityPyramid opacity;
+        const VoxelGrid& grid = grids[std::size_t(settings.cascades - 1 - finer)];
+        opacity.base = log.run("voxelize" + cascadeSuffix(finer), mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, grid, settings.mode); });
+        if (mips) opacity = log.run("voxel mips" + cascadeSuffix(finer), kWorldPass, [&] { return buildPyramid(std::move(opacity.base), settings); });
+        if (finer > 0) linkCascade(opacity, std::move(coarser));
+        coarser = std::move(opacity);
+    }
+    return coarser;
+}
+
+World buildWorld(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const WorldReads& reads, PassLog& log)
 {
     World world;
     const bool mips = reads.mips || settings.direct.shadows == Shadows::cone;
-    if (reads.bits || mips) world.opacity.base = log.run("voxelize", mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, settings.voxel); });
-    if (mips) world.opacity = log.run("voxel mips", kWorldPass, [&] { return buildPyramid(std::move(world.opacity.base), settings.voxel); });
+    if (reads.bits || mips) world.opacity = buildVoxels(scene, camera, settings.voxel, mips, log);
     for (const Light& light : scene.lights)
         world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass,
                                      [&] { return renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter); }));
@@ -103,11 +119,11 @@ GatherMethod chosenMethod(const Settings& settings, const RenderOptions& options
     return options.method.gather ? options.method : methodOf(settings);
 }
 
-/// For the progress bar: voxels and their mips, G-buffer, direct, filter, composite; the method's are counted by what it predicts, and its gather.
-std::size_t expectedPasses(const Scene& scene)
+/// For the progress bar: G-buffer, direct, filter, composite; voxels and their mips a cascade; the method's are counted by what it predicts, and its gather.
+std::size_t expectedPasses(const Scene& scene, int cascades)
 {
-    constexpr std::size_t kOfTheFrame = 6, kGather = 1, kPerLight = 2;
-    return kOfTheFrame + kGather + kPerLight * scene.lights.size();
+    constexpr std::size_t kOfTheFrame = 4, kGather = 1, kPerLight = 2, kPerCascade = 2;
+    return kOfTheFrame + kGather + kPerLight * scene.lights.size() + kPerCascade * std::size_t(cascades);
 }
 
 }  // namespace
@@ -138,10 +154,10 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
     frame.needs = prepare(scene, settings);
     const Requirements& needs = frame.needs;
     const GatherMethod method = chosenMethod(settings, options);
-    PassLog log(options.watch, expectedPasses(scene));
+    PassLog log(options.watch, expectedPasses(scene, settings.voxel.cascades));
 
     // What is there: occlusion as voxels, light as a reflective shadow map a light.
-    const World world = buildWorld(scene, needs, settings, method.reads, log);
+    const World world = buildWorld(scene, camera, needs, settings, method.reads, log);
 
     // What the eye sees, and its direct light.
     frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, gbufferSettings(settings, options)); });
@@ -171,7 +187,7 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
     if (!method.explain) throw InputError("--pixel", "this method explains no pixel");
     const PassWatch nobody{.hashPasses = false, .progress = {}, .observe = {}};
     PassLog log(nobody);
-    const World world = buildWorld(scene, needs, settings, method.reads, log);
+    const World world = buildWorld(scene, camera, needs, settings, method.reads, log);
     const GBuffer gbuffer = renderGBuffer(scene, camera, needs, gbufferSettings(settings, options));
     return method.explain(
         {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = gbuffer, .rsms = world.rsms, .opacity = world.opacity}, x, y);

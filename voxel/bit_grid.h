@@ -24,16 +24,21 @@ struct VoxelGrid {
 /// Cube centred on `bounds`: the longest side plus a margin of two voxels at either end (less where the resolution is below 8).
 VoxelGrid fitVoxelGrid(const Aabb& bounds, int resolution);
 
-/// Distance, in base voxels, at which a ray leaves the grid's cube (0 if it never meets it).
-inline float gridExit(const Vec3& originVoxels, const Vec3& direction, int resolution)
+/// Distance, in base voxels, at which a ray leaves a box (0 if it never meets it).
+inline float boxExit(const Vec3& originVoxels, const Vec3& direction, const Vec3& low, const Vec3& high)
 {
     float exit = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0.0f) continue;
-        const float wall = direction[axis] > 0.0f ? static_cast<float>(resolution) : 0.0f;
+        const float wall = direction[axis] > 0.0f ? high[axis] : low[axis];
         exit = std::min(exit, (wall - originVoxels[axis]) / direction[axis]);
     }
     return std::max(exit, 0.0f);
+}
+/// The same of the grid's cube.
+inline float gridExit(const Vec3& originVoxels, const Vec3& direction, int resolution)
+{
+    return boxExit(originVoxels, direction, Vec3(0.0f), Vec3(static_cast<float>(resolution)));
 }
 
 /// Binary occupancy, one bit a voxel, in bricks of 4x4x4: bit (x&3) + 4 (y&3) + 16 (z&3) of word brick(x/4, y/4, z/4), bricks x-fastest.

@@ -33,6 +33,10 @@ struct OpacityPyramid {
     /// For the sampler alone: per 4^3 brick, 1 + the highest level up to which every lookup centred in the brick is 0; 0 if none.
     std::vector<std::uint8_t> emptyLevels;
 
+    /// The next cascade (voxel/cascades.h), or none: then this grid is all there is. Its corner, in this grid's voxels.
+    std::vector<OpacityPyramid> coarser;
+    IVec3 coarserCorner{0};
+
     int levels() const { return int(levelOffset.size()); }
     int channels() const { return axes == OpacityAxes::directional ? 3 : 1; }
     int resolutionAt(int level) const { return base.grid.resolution >> level; }
@@ -45,7 +49,7 @@ struct OpacityPyramid {
     float value(int level, int axis, int x, int y, int z) const;
 };
 
-/// UNORM8 on a GPU, whatever is held here.
+/// UNORM8 on a GPU, whatever is held here. Of one cascade: the next is another pass's output.
 template <class Visit>
 void forEachArray(const OpacityPyramid& pyramid, Visit&& visit)
 {
@@ -71,7 +75,7 @@ std::size_t predictPyramidGpuBytes(const VoxelSettings& settings);
 /// These two choose among the pyramid's kinds at every call; a hot loop takes the sampler in sample_opacity.h, which they wrap.
 Vec3 sampleLevel(const OpacityPyramid& pyramid, const Vec3& pVoxels, int level, FilterFraction fraction);
 
-/// Quadrilinear: `level` in [0, levels - 1], clamped; exact at whole levels. Error, of what the stored texels say, <= kOpacityLookupMaxError.
+/// Quadrilinear, of all cascades: `level` in [0, levels - 1], clamped; exact at whole levels. Error, of what the stored texels say, <= kOpacityLookupMaxError.
 inline constexpr float kOpacityLookupMaxError = 3e-7f;
 Vec3 sampleOpacity(const OpacityPyramid& pyramid, const Vec3& pVoxels, float level, FilterFraction fraction);
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "voxel/cascades.h"
 #include "voxel/opacity_pyramid.h"
 
 #include <array>
 #include <cassert>
 #include <cstring>
+#include <memory>
 
 namespace lrsm {
 
@@ -42,6 +44,8 @@ struct OpacityView {
     ByteView unorm8, emptyLevels;
     const std::int32_t* bits;  ///< two words a brick, the lower half of z first
     int resolution, brickEdge, topLevel;
+    VoxelBox outermost;                          ///< of all cascades
+    std::unique_ptr<const OpacityView> coarser;  ///< the next cascade, or none
 
     OpacityView(const OpacityPyramid& source, FilterFraction filterFraction)
         : pyramid(source),
@@ -51,7 +55,9 @@ struct OpacityView {
           bits(reinterpret_cast<const std::int32_t*>(source.base.bricks.data())),
           resolution(source.base.grid.resolution),
           brickEdge(BitGrid::bricksPerEdge(resolution)),
-          topLevel(source.levels() - 1)
+          topLevel(source.levels() - 1),
+          outermost(outermostBox(source)),
+          coarser(nextCascade(source) ? std::make_unique<const OpacityView>(*nextCascade(source), filterFraction) : nullptr)
     {
     }
 };

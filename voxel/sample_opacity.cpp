@@ -12,7 +12,9 @@ Vec3 sampleLevel(const OpacityPyramid& pyramid, const Vec3& pVoxels, int level, 
 
 Vec3 sampleOpacity(const OpacityPyramid& pyramid, const Vec3& pVoxels, float level, FilterFraction fraction)
 {
-    return withOpacitySampler(pyramid, fraction, [&](const auto& sample) { return sample(pVoxels, level); });
+    Vec3 sum(0.0f);
+    forOpacityParts(pyramid, pVoxels, level, fraction, [&](const Vec3& part) { sum += part; });
+    return sum;
 }
 
 }  // namespace lrsm

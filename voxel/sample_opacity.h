@@ -1,5 +1,6 @@
 #pragma once
 
+#include "voxel/cascades.h"
 #include "voxel/opacity_pyramid.h"
 #include "voxel/sampling_vectors.h"
 
@@ -209,6 +210,15 @@ decltype(auto) withOpacitySampler(const OpacityPyramid& pyramid, FilterFraction 
     }
     if (pyramid.axes == OpacityAxes::isotropic) return withFraction.template operator()<Storage::float32, OpacityAxes::isotropic>();
     return withFraction.template operator()<Storage::float32, OpacityAxes::directional>();
+}
+
+/// sampleOpacity in its parts: visit(value) for each cascade that answers. Their sum is the lookup.
+template <class Visit>
+void forOpacityParts(const OpacityPyramid& pyramid, const Vec3& pVoxels, float level, FilterFraction fraction, const Visit& visit)
+{
+    forCascades(pyramid, pVoxels, level, [&](const OpacityPyramid& cascade, const Vec3& p, float cascadeLevel, float factor) {
+        visit(withOpacitySampler(cascade, fraction, [&](const auto& sample) { return sample(p, cascadeLevel); }) * factor);
+    });
 }
 
 }  // namespace lrsm

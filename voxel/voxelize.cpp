@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/invisible.h"
+#include "voxel/cascades.h"
 #include "voxel/voxelize_triangle.h"
 
 #include <bit>
@@ -111,13 +112,22 @@ VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings)
     return fitVoxelGrid(settings.extent == Extent::reach && reachIsPart(scene) ? scene.reach : scene.bounds, settings.resolution);
 }
 
+std::vector<VoxelGrid> gridsOf(const Scene& scene, const VoxelSettings& settings, const Vec3& eye)
+{
+    return cascadeGrids(gridOf(scene, settings), settings.cascades, eye);
+}
+
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings)
 {
     assert(std::has_single_bit(static_cast<unsigned>(settings.resolution)));
+    return voxelize(scene, gridOf(scene, settings), settings.mode);
+}
+
+BitGrid voxelize(const Scene& scene, const VoxelGrid& grid, Voxelization mode)
+{
     checkBounds(scene.bounds);
-    BitGrid bits = emptyGrid(gridOf(scene, settings));
-    forTrianglesOf(scene, bits.grid, settings.mode,
-                   [&](std::size_t, std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, settings.mode, bits); });
+    BitGrid bits = emptyGrid(grid);
+    forTrianglesOf(scene, bits.grid, mode, [&](std::size_t, std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, mode, bits); });
     return bits;
 }
 

@@ -11,6 +11,8 @@ namespace lrsm {
 
 /// The grid of a scene: about its reach, or all of it (settings.extent).
 VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings);
+/// That one, and finer ones about the eye (settings.cascades), finest first: cascadeGrids.
+std::vector<VoxelGrid> gridsOf(const Scene& scene, const VoxelSettings& settings, const Vec3& eye);
 
 /// Scene -> binary occupancy (Sec. 3.2). `conservative`: exactly the voxels whose closed box the closed triangle overlaps (26-separating);
 /// `thin`: Schwarz and Seidel 2010's 6-separating test, a subset; `raster`: projection along the dominant axis sampled at pixel centres,
@@ -19,6 +21,7 @@ VoxelGrid gridOf(const Scene& scene, const VoxelSettings& settings);
 /// With an alpha mask in the scene the whole triangle is solid, as a GPU voxelizer that does not sample textures would have it; unless its mesh is drawn
 /// nowhere.
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
+BitGrid voxelize(const Scene& scene, const VoxelGrid& grid, Voxelization mode);  ///< in a grid that covers as much as it does
 
 /// Of one triangle: voxels of one brick that it sets, as `voxelize` would.
 struct BrickFragments {

@@ -77,6 +77,7 @@ Settings capturedSettings(const Options& options)
     };
     if (settings.method == Method::lrsm && settings.cones.march.visibility != Visibility::cones)
         throw InputError("capture", "holds the cones' passes alone; take visibility=cones");
+    if (settings.voxel.cascades != 1) throw InputError("capture", "holds the voxels of one grid; take voxel_cascades=1");
     if (settings.cones.set.gatherDivisor != 1 && methodOf(settings).pixelByPixel)
         throw InputError("capture", "holds the passes of all pixels; take gather_divisor=1");
     if (settings.method == Method::proxies && settings.proxies.gatherDivisor != 1) {

@@ -175,6 +175,14 @@ Json requirementsJson(const Requirements& needs)
             {"textures", needs.textures}, {"vertex_colors", needs.vertexColors}, {"left_out", needs.leftOut}};
 }
 
+Json voxelGridsJson(const std::vector<VoxelGrid>& grids, const glm::dvec3& origin)
+{
+    Json list = Json::array();
+    for (const VoxelGrid& grid : grids)
+        list.push_back({{"corner", placeJson(grid.origin, origin)}, {"voxel_metres", grid.voxelSize}, {"resolution", grid.resolution}});
+    return list;
+}
+
 Image<Vec3> worldPositions(const Scene& scene, const Image<Vec3>& position, const Image<float>& depth)
 {
     Image<Vec3> world = position;
@@ -208,6 +216,12 @@ void printRequirements(std::ostream& out, const Requirements& needs)
     out << "left out, without changing a bit of the picture:\n";
     if (needs.leftOut.empty()) out << "  nothing\n";
     for (const std::string& line : needs.leftOut) out << "  " << line << "\n";
+}
+
+void printVoxelGrids(std::ostream& out, const std::vector<VoxelGrid>& grids, const glm::dvec3& origin)
+{
+    for (const VoxelGrid& grid : grids)
+        out << "voxels: " << grid.resolution << "^3 of " << grid.voxelSize << " m, from " << brief(origin, grid.origin) << " on\n";
 }
 
 }  // namespace lrsm

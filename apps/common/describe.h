@@ -4,9 +4,11 @@
 #include "core/base/image.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "voxel/bit_grid.h"
 
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
+#include <vector>
 
 /// What is in a scene, for people and as JSON: shared by info, render, reference and captures.
 namespace lrsm {
@@ -30,11 +32,14 @@ nlohmann::ordered_json lightJson(const Light& light, const glm::dvec3& origin = 
 /// Name, hash, counts, bounds, reach, notes; the hash is `sha256` of the scene as loaded.
 nlohmann::ordered_json sceneJson(const Scene& scene, const std::string& sha256);
 nlohmann::ordered_json requirementsJson(const Requirements& needs);
+/// Of each, finest first: its corner in the file's world, metres a voxel, voxels along an edge.
+nlohmann::ordered_json voxelGridsJson(const std::vector<VoxelGrid>& grids, const glm::dvec3& origin);
 
 /// A picture's positions in the file's world; 0 where its depth is.
 Image<Vec3> worldPositions(const Scene& scene, const Image<Vec3>& position, const Image<float>& depth);
 
 void printScene(std::ostream& out, const Scene& scene);
 void printRequirements(std::ostream& out, const Requirements& needs);
+void printVoxelGrids(std::ostream& out, const std::vector<VoxelGrid>& grids, const glm::dvec3& origin);
 
 }  // namespace lrsm

@@ -6,6 +6,7 @@
 #include "core/imageio/image_io.h"
 #include "core/scene/exposure.h"
 #include "core/settings/settings_table.h"
+#include "voxel/voxelize.h"
 
 #include <cmath>
 #include <functional>
@@ -89,6 +90,7 @@ Json frameJson(const Frame& frame, const FrameRecord& record)
             {"radiance", record.radiance},
             {"scene", sceneJson(record.scene, record.sceneHash)},
             {"camera", cameraJson(record.camera, Angle::degrees, record.scene.origin)},
+            {"voxel_grids", voxelGridsJson(gridsOf(record.scene, record.settings.voxel, record.camera.position), record.scene.origin)},
             {"requires", requirementsJson(frame.needs)},
             {"milliseconds", milliseconds},
             {"passes", passesJson(frame)},

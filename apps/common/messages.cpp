@@ -100,10 +100,10 @@ void addExtent(const Scene& scene, const Camera& camera, const Settings& setting
                         (settings.direct.shadows == Shadows::exact ? "" : "direct light has no shadows and ") +
                         "nothing occludes or reflects indirect light (--bounds scene covers all of it)");
     constexpr double kVoxelsAcross = 2.0;
-    const double voxel = double(gridOf(scene, settings.voxel).voxelSize);
+    const double voxel = double(gridsOf(scene, settings.voxel, camera.position).front().voxelSize);
     if (const std::optional<double> feature = nearFeature(scene, camera); feature && kVoxelsAcross * voxel > *feature)
         lines.push_back("a voxel is " + metres(voxel) + " wide, things in view are as small as " + metres(*feature) +
-                        ": indirect light cannot tell them apart; raise voxel_resolution or cover less with --bounds");
+                        ": indirect light cannot tell them apart; raise voxel_resolution or voxel_cascades, or cover less with --bounds");
 }
 
 /// Float32 depths over a light's range, against a tenth of a texel where it shines: a bias below that is rounding.

@@ -153,7 +153,7 @@ SceneAnalysis analyseScene(const Scene& scene, const Camera& camera, const Requi
     const FloatState state;
     checkScene(scene);
     validate(settings);
-    const VoxelGrid grid = gridOf(scene, settings.voxel);
+    const VoxelGrid grid = gridsOf(scene, settings.voxel, camera.position).front();
     const double voxelSize = double(grid.voxelSize);
     SceneAnalysis out = known ? *known : SceneAnalysis();
     out.needs = needs;

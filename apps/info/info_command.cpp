@@ -153,11 +153,13 @@ int runInfo(const InfoArguments& options)
     const Requirements needs = analyseRequirements(scene, settings.force);
     const SceneAnalysis analysis = analyseScene(scene, chosenCamera(scene, options), needs, settings, size.x, size.y);
     const std::vector<Advice> advice = adviseSettings(scene, analysis, settings, size.x, size.y);
+    const std::vector<VoxelGrid> grids = gridsOf(scene, settings.voxel, chosenCamera(scene, options).position);
     const auto memory = predictMemory({scene, needs, settings, size.x, size.y});
 
     if (options.json) {
         nlohmann::ordered_json json = {{"version", LRSM_VERSION},
                                        {"scene", sceneJson(scene, hashScene(scene))},
+                                       {"voxel_grids", voxelGridsJson(grids, scene.origin)},
                                        {"requires", requirementsJson(needs)},
                                        {"settings", settingsToJson(settings)},
                                        {"memory", memoryJson(memory)},
@@ -168,6 +170,7 @@ int runInfo(const InfoArguments& options)
         return 0;
     }
     printScene(std::cout, scene);
+    printVoxelGrids(std::cout, grids, scene.origin);
     printRequirements(std::cout, needs);
     printAnalysis(std::cout, analysis);
     printAdvice(std::cout, advice);

@@ -47,6 +47,7 @@ using Words = std::vector<std::string>;
 Words valuesOf(const SettingInfo& info, const Settings& base)
 {
     static const std::map<std::string, std::string> numbers = {{"voxel_resolution", "64 128 256 512 1024"},
+                                                               {"voxel_cascades", "1 2 3"},
                                                                {"rsm_resolution", "128 256 512 1024 2048 4096"},
                                                                {"depth_layers", "1 2 3 4 6"},
                                                                {"normal_layers", "1 2 3 4"},

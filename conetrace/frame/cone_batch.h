@@ -40,6 +40,14 @@ struct ConeBatchResult {
     alignas(64) float opacity[kBatchRoom];
 };
 
+/// Where there are several cascades: what of a tap goes from one to the next, by cone, and of the lookups their factor, as forCascades has them.
+struct CascadeTaps {
+    alignas(64) float voxels[3][kBatchRoom];
+    alignas(64) float left[kBatchRoom];
+    alignas(64) float factor[kBatchRoom];
+    alignas(64) float width[kBatchRoom], voxel[kBatchRoom];  // TapSize where a surface is asked for, by cone
+};
+
 /// What a march keeps of its cones from step to step, by cone, and its lists of those that a stage has left over. A stage writes a list, the next one
 /// reads it: whatever share of the cones survives, all lanes are busy.
 struct MarchBatchScratch {
@@ -52,6 +60,7 @@ struct MarchBatchScratch {
     // Cones whose tap may meet a voxel: their sample's place, in voxels.
     alignas(64) std::int32_t lookup[kBatchRoom];
     alignas(64) float lookupVoxels[3][kBatchRoom];
+    CascadeTaps cascadeTaps;
     // Cones that may meet an emitter: their sample's place, in the world.
     alignas(64) std::int32_t request[kBatchRoom];
     alignas(64) std::int32_t requestOctant[kBatchRoom];  // of its direction: bit k: component k is negative

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/scene/brdf.h"
 #include "core/scene/light.h"
+#include "voxel/cascades.h"
 
 #include <cassert>
 
@@ -86,11 +87,14 @@ float shadowConeTanHalf(const DirectSettings& settings)
     return static_cast<float>(tangent(double(settings.shadowConeApertureDegrees) * (0.5 * 3.14159265358979323846 / 180.0)));
 }
 
-float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
+float shadowFromCone(const OpacityPyramid& finest, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture)
 {
+    constexpr float kHalf = 0.5f;
+    const OpacityPyramid& opacity = cascadeAt(finest, cascadeOfReceiver(finest, pWorld, kHalf));
     const VoxelGrid& grid = opacity.base.grid;
     const Vec3 origin = grid.voxelsFromWorld(pWorld) + nGeometric * kNormalOffsetVoxels;
-    const float end = std::min(distance / grid.voxelSize, gridExit(origin, toLight, grid.resolution));
+    const VoxelBox box = outermostBox(opacity);
+    const float end = std::min(distance / grid.voxelSize, boxExit(origin, toLight, box.low, box.high));
 
     float transmittance = 1.0f;
     for (float t = kStartVoxels; t < end && transmittance > kTransmittanceCutoff;) {

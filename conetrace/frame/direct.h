@@ -23,6 +23,6 @@ DirectResult traceDirect(const GBuffer& gbuffer, const Scene& scene, const Camer
 float shadowConeTanHalf(const DirectSettings& settings);
 
 /// V by a cone towards the light, Eq. 1 front to back with nothing gathered: the transmittance left at `distance` metres (may be infinite).
-float shadowFromCone(const OpacityPyramid& opacity, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture);
+float shadowFromCone(const OpacityPyramid& finest, const Vec3& pWorld, const Vec3& nGeometric, const Vec3& toLight, float distance, float tanHalfAperture);
 
 }  // namespace lrsm

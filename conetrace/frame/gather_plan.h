@@ -27,7 +27,7 @@ inline float gridDiagonal(int gridResolution)
     return kCubeDiagonal * static_cast<float>(gridResolution);
 }
 
-/// Cones reach through the whole grid, `gridResolution` voxels along an edge.
+/// Cones reach through the whole grid, `gridResolution` voxels along an edge (of cascades: through all of them, in the finest's voxels).
 GatherPlan planGather(const ConeSettings& settings, const Requirements& needs, int gridResolution);
 
 }  // namespace lrsm

@@ -37,7 +37,12 @@ std::vector<MemoryRow> predictVoxels(const VoxelSettings& settings, bool bits, b
     } else {
         return {};
     }
-    return {row};
+    std::vector<MemoryRow> rows(std::size_t(settings.cascades), row);
+    for (int finer = 0; finer < settings.cascades; ++finer) {
+        rows[std::size_t(finer)].structure += cascadeSuffix(finer);
+        rows[std::size_t(finer)].pass += cascadeSuffix(finer);
+    }
+    return rows;
 }
 
 std::vector<MemoryRow> predictShadowMaps(const Settings& settings, std::size_t lights)

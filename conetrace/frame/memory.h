@@ -34,7 +34,13 @@ struct MemoryQuestion {
     const std::vector<PassReport>* rendered = nullptr;  ///< of this very frame, where there is one: the same
 };
 
-/// The voxels: their bits and mips, or the bits alone; none where neither is read.
+/// After the names of a cascade's passes and rows: none for the widest, which a lone grid is too; " 1", " 2" for those 2, 4 times as fine.
+inline std::string cascadeSuffix(int finer)
+{
+    return finer == 0 ? "" : " " + std::to_string(finer);
+}
+
+/// The voxels, a row a cascade: their bits and mips, or the bits alone; none where neither is read.
 std::vector<MemoryRow> predictVoxels(const VoxelSettings& settings, bool bits, bool mips);
 /// A reflective shadow map a light.
 std::vector<MemoryRow> predictRsms(const RsmSettings& settings, std::size_t lights);

@@ -1,6 +1,7 @@
 #include "conetrace/frame/receiver.h"
 
 #include "conetrace/frame/cones.h"
+#include "voxel/cascades.h"
 
 namespace lrsm {
 
@@ -15,6 +16,12 @@ Receiver receiverAt(const GBuffer& gbuffer, const VoxelGrid& grid, const ConeSet
     receiver.originVoxels = grid.voxelsFromWorld(receiver.originWorld);
     receiver.rotation = rotationOfPixel(x, y, settings.set.rotation);
     return receiver;
+}
+
+int cascadeOfPixel(const GBuffer& gbuffer, const OpacityPyramid& finest, const ConeSettings& settings, int x, int y)
+{
+    const float threshold = (float(rotationOfPixel(x, y, settings.set.rotation)) + 0.5f) / float(kRotations);
+    return cascadeOfReceiver(finest, gbuffer.position.at(x, y), threshold);
 }
 
 }  // namespace lrsm

@@ -2,7 +2,7 @@
 
 #include "conetrace/frame/gbuffer.h"
 #include "core/settings/settings.h"
-#include "voxel/bit_grid.h"
+#include "voxel/opacity_pyramid.h"
 
 namespace lrsm {
 
@@ -14,5 +14,8 @@ struct Receiver {
     int rotation = 0;                            ///< of the cone set, 0 .. kRotations - 1
 };
 Receiver receiverAt(const GBuffer& gbuffer, const VoxelGrid& grid, const ConeSettings& settings, int x, int y);
+
+/// Which cascade a pixel's cones count in (cascadeOfReceiver): near a border the rotations differ, and the 4x4 filter blends them.
+int cascadeOfPixel(const GBuffer& gbuffer, const OpacityPyramid& finest, const ConeSettings& settings, int x, int y);
 
 }  // namespace lrsm

@@ -78,11 +78,15 @@ std::string explainLrsm(const GatherInput& input, int x, int y)
     const ConeSettings& settings = input.settings.cones;
     std::vector<Lrsm> lrsms;
     for (const Rsm& rsm : input.rsms) lrsms.push_back(buildLrsm(rsm, input.settings.layers));
-    const GatherPlan plan = planGather(settings, input.needs, input.opacity.base.grid.resolution);
+    const GatherPlan plan = planGather(settings, input.needs, outermostEdge(input.opacity));
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
-    const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
+    const ConeWorld finest{.opacity = input.opacity, .lrsms = lrsms, .settings = settings, .phi = phi};
+    const int cascade = cascadeOfPixel(input.gbuffer, input.opacity, settings, x, y);
+    const std::vector<ConeWorld> worlds = cascadeWorlds(finest);
+    const ConeWorld& world = worlds[std::size_t(cascade)];
     std::string text = settings.march.estimator == Estimator::slab ? explainWith<Estimator::slab>(input.gbuffer, input.camera, world, plan, x, y)
                                                                    : explainWith<Estimator::paper>(input.gbuffer, input.camera, world, plan, x, y);
+    if (worlds.size() > 1) text += formatted("cones count in voxels of cascade %d of %d, 0 the finest\n", cascade, int(worlds.size()));
     text += originText(input.scene);
     if (!lrsms.empty() && lrsms[0].preExposure != 1.0f)
         text += formatted("R of layers, and what they give (->), are times %g, the light maps' pre-exposure\n", double(lrsms[0].preExposure));

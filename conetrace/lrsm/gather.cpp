@@ -9,6 +9,7 @@
 #include "voxel/sample_opacity.h"
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -26,15 +27,17 @@ struct GatherOutput {
 };
 
 /// The pixels of one tile by Algorithm 1, one after the other.
-template <class Sampler>
-void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const Sampler& sampler, const GatherPlan& plan, int tileX, int tileY,
-                const GatherOutput& to, ConeCounts& counts)
+template <class SamplerOf>
+void gatherTile(const GBuffer& gbuffer, const Camera& camera, const std::vector<ConeWorld>& worlds, const SamplerOf& samplerOf, const GatherPlan& plan,
+                int tileX, int tileY, const GatherOutput& to, ConeCounts& counts)
 {
     Gathered& out = to.gathered;
     MarchScratch scratch;
     forPixels(gbuffer.width, gbuffer.height, tileX, tileY, [&](int x, int y) {
         const std::size_t pixel = out.irradiance.index(x, y);
         if (!gbuffer.covered(pixel)) return;
+        const ConeWorld& world = worlds[std::size_t(cascadeOfPixel(gbuffer, worlds[0].opacity, worlds[0].settings, x, y))];
+        const auto& sampler = samplerOf(world);
         const Receiver receiver = receiverAt(gbuffer, world.opacity.base.grid, world.settings, x, y);
         ResultRecorder recorder{{}, diffuseKeeper(to.record, pixel)};
         const PixelGather diffuse = gatherDiffuse<Estimator::paper>(world, sampler, plan, receiver, scratch, counts, recorder);
@@ -53,18 +56,29 @@ void gatherTile(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 /// `paper`, Algorithm 1 as printed: one cone at a time.
 void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out)
 {
-    withOpacitySampler(world.opacity, world.settings.march.filterFraction, [&](const auto& sampler) {
+    const std::vector<ConeWorld> worlds = cascadeWorlds(world);
+    const FilterFraction fraction = world.settings.march.filterFraction;
+    const auto gatherWith = [&](const auto& samplerOf) {
         out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, world, sampler, plan, tileX, tileY, out, counts); };
+            return [&](int tileX, int tileY, ConeCounts& counts) { gatherTile(gbuffer, camera, worlds, samplerOf, plan, tileX, tileY, out, counts); };
         });
-    });
+    };
+    if (worlds.size() > 1)
+        gatherWith([&](const ConeWorld& own) { return GenericSampler{own.opacity, fraction}; });
+    else
+        withOpacitySampler(world.opacity, fraction, [&](const auto& sampler) { gatherWith([&](const ConeWorld&) -> const auto& { return sampler; }); });
 }
 
-/// The pixels of one tile as a batch of cones: all of them for one cone of the set, then for the next.
+/// The pixels of one tile whose cones count in one cascade, as a batch of cones: all of them for one cone of the set, then for the next.
 class TileBatch {
   public:
-    TileBatch(const GBuffer& gbuffer, const BatchWorld& world, const GatherPlan& plan, MarchBatch march)
-        : gbuffer_(gbuffer), world_(world), plan_(plan), march_(march)
+    TileBatch(const GBuffer& gbuffer, const std::deque<BatchWorld>& worlds, std::size_t cascade, const GatherPlan& plan, MarchBatch march)
+        : gbuffer_(gbuffer),
+          finest_(worlds[0].cones.opacity),
+          cascade_(worlds.size() > 1 ? int(cascade) : kOnly),
+          world_(worlds[cascade]),
+          plan_(plan),
+          march_(march)
     {
     }
 
@@ -84,6 +98,7 @@ class TileBatch {
         forPixels(gbuffer_.width, gbuffer_.height, tileX, tileY, [&](int x, int y) {
             const std::size_t pixel = gbuffer_.position.index(x, y);
             if (!gbuffer_.covered(pixel)) return;
+            if (cascade_ != kOnly && cascadeOfPixel(gbuffer_, finest_, world_.cones.settings, x, y) != cascade_) return;
             pixels_.push_back(pixel);
             receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
         });
@@ -168,7 +183,11 @@ class TileBatch {
         return unexposed(world_.cones.lrsms) * Vec3(result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]);
     }
 
+    static constexpr int kOnly = -1;
+
     const GBuffer& gbuffer_;
+    const OpacityPyramid& finest_;
+    const int cascade_;  ///< kOnly: there is one
     const BatchWorld& world_;
     const GatherPlan& plan_;
     const MarchBatch march_;
@@ -182,13 +201,21 @@ class TileBatch {
 /// `slab`: tile by tile at the widest that the machine has.
 void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
 {
-    const BatchWorld batchWorld(world);
+    const std::vector<ConeWorld> cascades = cascadeWorlds(world);
+    std::deque<BatchWorld> worlds;  // which do not move
+    for (const ConeWorld& own : cascades) {
+        if (worlds.empty())
+            worlds.emplace_back(own);
+        else
+            worlds.emplace_back(own, worlds[0].maps);
+    }
     const MarchBatch march = marchSlabBatch(lanes);
-    out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&, batch = TileBatch(gbuffer, batchWorld, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
-            batch.gather(camera, tileX, tileY, out, counts);
-        };
-    });
+    for (std::size_t cascade = 0; cascade < worlds.size(); ++cascade)
+        out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
+            return [&, batch = TileBatch(gbuffer, worlds, cascade, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
+                batch.gather(camera, tileX, tileY, out, counts);
+            };
+        });
 }
 
 }  // namespace
@@ -204,7 +231,7 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
                     const ConeSettings& settings, ConeRecord* record, int lanes)
 {
     if (record) *record = ConeRecord(gbuffer, needs, settings);
-    const GatherPlan plan = planGather(settings, needs, opacity.base.grid.resolution);
+    const GatherPlan plan = planGather(settings, needs, outermostEdge(opacity));
     Gathered out = emptyGathered(gbuffer, needs, plan.lobes.sampling());
     const NormalCdf phi(settings.gather.gaussian, settings.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = settings, .phi = phi};

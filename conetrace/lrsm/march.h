@@ -5,7 +5,7 @@
 #include "core/settings/settings.h"
 #include "lrsm/footprint.h"
 #include "lrsm/sample.h"
-#include "voxel/opacity_pyramid.h"
+#include "voxel/sample_opacity.h"
 
 #include <vector>
 
@@ -22,17 +22,31 @@ struct ConeWorld {
     const NormalCdf& phi;
 };
 
+/// One a cascade, finest first: a receiver's cones count in the voxels of its own.
+inline std::vector<ConeWorld> cascadeWorlds(const ConeWorld& finest)
+{
+    std::vector<ConeWorld> worlds;
+    for (const OpacityPyramid* pyramid = &finest.opacity; pyramid; pyramid = nextCascade(*pyramid))
+        worlds.push_back({.opacity = *pyramid, .lrsms = finest.lrsms, .settings = finest.settings, .phi = finest.phi});
+    return worlds;
+}
+
 /// What turns gathered radiance into the scene's units. All maps have the scene's one pre-exposure, a power of two: exponents alone change.
 inline float unexposed(const std::vector<Lrsm>& lrsms)
 {
     return lrsms.empty() ? 1.0f : 1.0f / lrsms.front().preExposure;
 }
 
-/// The lookup for any pyramid and setting; the specialised OpacitySampler gives the same bits faster.
+/// The lookup for any pyramid, cascades and setting; the specialised OpacitySampler gives the same bits faster.
 struct GenericSampler {
     const OpacityPyramid& pyramid;
     FilterFraction fraction;
     Vec3 operator()(const Vec3& pVoxels, float level) const { return sampleOpacity(pyramid, pVoxels, level, fraction); }
+    template <class Visit>
+    void forParts(const Vec3& pVoxels, float level, const Visit& visit) const
+    {
+        forOpacityParts(pyramid, pVoxels, level, fraction, visit);
+    }
 };
 
 /// Working memory of one thread's cones, sized once for the longest schedule.

@@ -28,7 +28,8 @@ ConeResult marchPaper(const ConeWorld& world, const Sampler& sampler, const Cone
 {
     const ConeSettings& settings = world.settings;
     const VoxelGrid& grid = world.opacity.base.grid;
-    const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
+    const VoxelBox box = outermostBox(world.opacity);
+    const float exit = boxExit(ray.originVoxels, ray.direction, box.low, box.high);
 
     ConeResult result;
     float transmittance = 1.0f;

@@ -57,13 +57,13 @@ inline Vec3 opticalDepthAt(const std::vector<float>& edges, const std::vector<Ve
 }
 
 /// What is covered in front of an emitter of unit normal n that the cone crosses at `crossing`, its own voxels taken back.
-inline float depthInFront(const MarchSchedule& schedule, const MarchStep& step, const MarchScratch& scratch, OpacityAxes axes, const Vec3& direction,
-                          const Vec3& normal, float cosine, float crossing, float delay)
+inline float depthInFront(const MarchSchedule& schedule, const MarchStep& step, const TapSize& size, const MarchScratch& scratch, OpacityAxes axes,
+                          const Vec3& direction, const Vec3& normal, float cosine, float crossing, float delay)
 {
     const int done = step.firstTap + step.taps;
-    const Vec3 now = opticalDepthAt(schedule.edges, scratch.opticalDepth, done, crossing - kFrontTaps * step.tapWidth);
+    const Vec3 now = opticalDepthAt(schedule.edges, scratch.opticalDepth, done, crossing - kFrontTaps * size.width);
     const Vec3 before = opticalDepthAt(schedule.edges, scratch.opticalDepth, done, crossing - delay);
-    const float edge = 1.0f / std::min(step.tapWidth, kLongestColumnVoxels), c = std::max(cosine, kLeastEmitterCosine);
+    const float edge = 1.0f / std::min(size.width / size.voxel, kLongestColumnVoxels), c = std::max(cosine, kLeastEmitterCosine);
     Vec3 own = (glm::abs(normal) + edge) / c;
     own = axes == OpacityAxes::directional ? glm::abs(direction) * own : Vec3(sumOf(own), 0.0f, 0.0f);
     return sumOf(now - glm::min(glm::max(now - before, Vec3(0.0f)), own));
@@ -72,7 +72,7 @@ inline float depthInFront(const MarchSchedule& schedule, const MarchStep& step, 
 /// Emission of one light's layers within one segment, weighted by the transmittance in front of the emitter.
 template <class Recorder>
 Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const Vec3& pWorld, const MarchSchedule& schedule, std::size_t index,
-                  const MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
+                  const TapSize& size, const MarchScratch& scratch, ConeCounts& counts, Recorder& recorder)
 {
     const ConeSettings& settings = world.settings;
     const Lrsm& lrsm = world.lrsms[std::size_t(light)];
@@ -125,9 +125,9 @@ Vec3 slabEmission(const ConeWorld& world, int light, const ConeRay& ray, const V
         // Where its tangent plane is crossed, and what stands in front of that.
         const float length = glm::length(normal), cosine = nDotV / length, slack = kCrossingSlackTaps * step.tapWidth;
         const float crossing = std::clamp(step.middle - e0 / (rate * voxelSize), step.begin - slack, step.end + slack);
-        const float delay =
-            (settings.gather.emitterDelayTaps * step.tapWidth + settings.gather.emitterDelayVoxels) / std::max(cosine, settings.gather.emitterSlantCap);
-        const float front = depthInFront(schedule, step, scratch, world.opacity.axes, ray.direction, normal / length, cosine, crossing, delay);
+        const float delay = (settings.gather.emitterDelayTaps * size.width + settings.gather.emitterDelayVoxels * size.voxel) /
+                            std::max(cosine, settings.gather.emitterSlantCap);
+        const float front = depthInFront(schedule, step, size, scratch, world.opacity.axes, ray.direction, normal / length, cosine, crossing, delay);
         const float transmittance = transmittanceOf(front, settings);
         if (!(transmittance > 0.0f)) continue;
 
@@ -151,7 +151,8 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
 {
     const ConeSettings& settings = world.settings;
     const VoxelGrid& grid = world.opacity.base.grid;
-    const float exit = gridExit(ray.originVoxels, ray.direction, grid.resolution);
+    const VoxelBox box = outermostBox(world.opacity);
+    const float exit = boxExit(ray.originVoxels, ray.direction, box.low, box.high);
 
     ConeResult result;
     Vec3 depth(0.0f);  // F so far
@@ -170,9 +171,10 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         for (int k = step.firstTap; k < step.firstTap + step.taps; ++k) {
             if (step.readVoxels) {
                 ++counts.voxelTaps;
-                const Vec3 tap = sampler(ray.originVoxels + ray.direction * schedule.tapCentre(k), step.level);
-                occupied = occupied || sumOf(tap) > 0.0f;
-                depth += coveredAlong(world.opacity, tap, ray.direction) * (schedule.edges[std::size_t(k) + 1] - schedule.edges[std::size_t(k)]);
+                sampler.forParts(ray.originVoxels + ray.direction * schedule.tapCentre(k), step.level, [&](const Vec3& tap) {
+                    occupied = occupied || sumOf(tap) > 0.0f;
+                    depth += coveredAlong(world.opacity, tap, ray.direction) * (schedule.edges[std::size_t(k) + 1] - schedule.edges[std::size_t(k)]);
+                });
             }
             scratch.opticalDepth[std::size_t(k) + 1] = depth;
         }
@@ -186,8 +188,9 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         // Where neither this nor the last segment met a voxel there is no surface to emit.
         if (occupied || wasOccupied) {
             if constexpr (RecordsLookups<Recorder>) recorder.lookup(ConeSample{pWorld, 0.5f * step.diameter * grid.voxelSize, -ray.direction});
+            const TapSize size = tapSizeAt(world.opacity, ray.originVoxels + offset, step.level, step.tapWidth);
             for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
-                result.radiance += slabEmission(world, light, ray, pWorld, schedule, i, scratch, counts, recorder);
+                result.radiance += slabEmission(world, light, ray, pWorld, schedule, i, size, scratch, counts, recorder);
         }
         wasOccupied = occupied;
 

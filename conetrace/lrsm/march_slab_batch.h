@@ -5,6 +5,10 @@
 #include "lrsm/map_view.h"
 #include "voxel/opacity_view.h"
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 /// marchSlab for a batch of cones with one schedule, the same bits: one source (march_slab_lanes.inc) at the widths that machines have.
 namespace lrsm {
 
@@ -12,9 +16,11 @@ namespace lrsm {
 struct BatchWorld {
     const ConeWorld& cones;
     OpacityView opacity;
-    std::vector<MapView> maps;  ///< one a light
-    explicit BatchWorld(const ConeWorld& world)
-        : cones(world), opacity(world.opacity, world.settings.march.filterFraction), maps(world.lrsms.begin(), world.lrsms.end())
+    std::shared_ptr<const std::vector<MapView>> maps;  ///< one a light
+    explicit BatchWorld(const ConeWorld& world) : BatchWorld(world, std::make_shared<const std::vector<MapView>>(world.lrsms.begin(), world.lrsms.end())) {}
+    /// Of another cascade, with the maps that one keeps already.
+    BatchWorld(const ConeWorld& world, std::shared_ptr<const std::vector<MapView>> known)
+        : cones(world), opacity(world.opacity, world.settings.march.filterFraction), maps(std::move(known))
     {
     }
 };

@@ -27,6 +27,9 @@ struct SurfaceSettings {
     bool operator==(const SurfaceSettings&) const = default;
 };
 
+/// Finer cascades lie on every eighth voxel of the coarsest, of which the finest of four is an eighth wide.
+inline constexpr int kLeastCascadeResolution = 64;
+
 struct VoxelSettings {
     int resolution = 512;  ///< voxels along an edge, power of two, 1..2048
     Voxelization mode = Voxelization::thin;
@@ -34,6 +37,7 @@ struct VoxelSettings {
     OpacityAxes axes = OpacityAxes::directional;
     Storage storage = Storage::gpu;
     Extent extent = Extent::reach;
+    int cascades = 1;  ///< grids of `resolution`, each half as wide as the last, the finer ones about the eye, 1..4
     VoxelWeight surfaceWeight = VoxelWeight::area;
     bool operator==(const VoxelSettings&) const = default;
 };

@@ -163,6 +163,8 @@ void addBuildingRows(std::vector<SettingRow>& rows)
     rows.push_back(choice<&V::extent>(
         {"voxel_extent", "", "grid over what camera and lights reach, where that is far less than the scene; or over all of it", "ours; paper: scene"},
         extent));
+    rows.push_back(whole<&V::cascades>(
+        {"voxel_cascades", "grids", "the grid, and others of as many voxels about the eye, each half as wide as the last", "paper: future work"}, {1, 4}));
 
     rows.push_back(
         choice<&V::surfaceWeight>({"vox_weight", "", "of a triangle in the albedo and normal of its voxel: its area there, or 1", "ours"}, {"area", "count"}));

@@ -145,6 +145,15 @@ void validate(const Settings& settings)
         throw InputError("settings estimator=slab, layer_selection=centre",
                          "the slab estimator sums a partition of the layers; set layer_selection=touched and layer_overlap=0, or "
                          "estimator=paper");
+
+    if (settings.voxel.cascades == 1) return;
+    const std::string place = "settings voxel_cascades=" + std::to_string(settings.voxel.cascades);
+    if (settings.method == Method::vct || settings.method == Method::caches ||
+        (settings.method == Method::lrsm && cones.march.visibility == Visibility::voxelRays))
+        throw InputError(place, "cones of method=lrsm alone march through several grids; set voxel_cascades=1, or method=lrsm with visibility=cones");
+    if (settings.voxel.resolution < kLeastCascadeResolution)
+        throw InputError(place + ", voxel_resolution=" + std::to_string(settings.voxel.resolution),
+                         "grids of so few voxels cannot lie in each other; set voxel_resolution=" + std::to_string(kLeastCascadeResolution) + " or more");
 }
 
 std::vector<SettingInfo> describeSettings()

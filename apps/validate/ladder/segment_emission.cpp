@@ -29,7 +29,7 @@ SegmentEmission segmentEmission(const ConeWorld& world, std::span<const Rsm* con
     NoRecorder recorder;
     Vec3 shipped(0.0f);
     for (int light = 0; light < static_cast<int>(world.lrsms.size()); ++light)
-        shipped += slabEmission(world, light, sample.ray, sample.sphere.centre, schedule, 0, clear, counts, recorder);
+        shipped += slabEmission(world, light, sample.ray, sample.sphere.centre, schedule, 0, {.width = step.tapWidth}, clear, counts, recorder);
     emission.segment = double(shipped.x + shipped.y + shipped.z) / 3.0;
     return emission;
 }

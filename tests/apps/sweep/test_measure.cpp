@@ -192,7 +192,7 @@ TEST_CASE("the calibration frame is no preset's: its settings are pinned", "[swe
     CHECK(json.at("method") == "lrsm");
     CHECK(json.at("visibility") == "cones");
     CHECK(json.at("filter_passes") == 0);
-    for (const char* later : {"method", "visibility", "filter_passes", "gather_divisor", "rsm_snap", "specular_direction"})
+    for (const char* later : {"method", "visibility", "filter_passes", "gather_divisor", "voxel_cascades", "rsm_snap", "specular_direction"})
         json.erase(later);  // settings that came after the pin
     // Of other methods: the frame reads none of them.
     for (const SettingInfo& info : describeSettings())

@@ -66,7 +66,27 @@ struct BatchCase {
     ConeSettings cones = {};
     LayerSettings layers = {};
     int lights = 3;
+    int cascades = 1;
 };
+
+/// Random voxels in each of several grids, nowhere in each other's middle.
+OpacityPyramid randomCascades(const BatchCase& c, SearchRandom& random)
+{
+    OpacityPyramid finer = randomVoxels(c.resolution, c.voxels, random);
+    std::vector<OpacityPyramid> all = {finer};
+    for (int i = 1; i < c.cascades; ++i) {
+        OpacityPyramid next = randomVoxels(c.resolution, c.voxels, random);
+        const VoxelGrid& grid = all.back().base.grid;
+        next.base.grid = {grid.origin - Vec3(8.0f, 24.0f, 16.0f) * grid.voxelSize, 2.0f * grid.voxelSize, grid.resolution};
+        all.push_back(std::move(next));
+    }
+    while (all.size() > 1) {
+        OpacityPyramid coarser = std::move(all.back());
+        all.pop_back();
+        linkCascade(all.back(), std::move(coarser));
+    }
+    return all.front();
+}
 
 struct Cones {
     ConeBatch batch;
@@ -103,7 +123,7 @@ void holdBatch(const BatchCase& c, std::uint32_t seed)
 {
     CAPTURE(c.name, c.resolution);
     SearchRandom random(seed);
-    const OpacityPyramid opacity = randomVoxels(c.resolution, c.voxels, random);
+    const OpacityPyramid opacity = randomCascades(c, random);
     const VoxelGrid& grid = opacity.base.grid;
     std::vector<Lrsm> lrsms;
     for (int l = 0; l < c.lights; ++l) {
@@ -113,7 +133,7 @@ void holdBatch(const BatchCase& c, std::uint32_t seed)
     const NormalCdf phi(c.cones.gather.gaussian, c.cones.gather.gaussianTableSize);
     const ConeWorld world{.opacity = opacity, .lrsms = lrsms, .settings = c.cones, .phi = phi};
     const BatchWorld batchWorld(world);
-    const MarchSchedule schedule = makeSchedule(c.cones, 0.4f, 1.74f * float(c.resolution));
+    const MarchSchedule schedule = makeSchedule(c.cones, 0.4f, 1.74f * float(outermostEdge(opacity)));
 
     for (const int count : {1, 5, 17, 100}) {
         const auto cones = randomCones(grid, count, random);
@@ -177,6 +197,10 @@ std::vector<BatchCase> allCases()
     cases.push_back(layered);
     cases.push_back({.name = "64 lights", .resolution = 16, .lights = 64});
     cases.push_back({.name = "no light", .resolution = 16, .lights = 0});
+    for (int cascades = 2; cascades <= 4; ++cascades) cases.push_back({.name = "cascades", .resolution = 32, .cascades = cascades});
+    BatchCase opacities{.name = "cascades, one opacity a voxel", .resolution = 32, .cascades = 2};
+    opacities.voxels.axes = OpacityAxes::isotropic;
+    cases.push_back(opacities);
     return cases;
 }
 
