@@ -23,18 +23,14 @@ if [ -z "${CHOICES:-}" ]; then
         echo "\`balanced\`: --preset balanced"
         echo "\`proxies\`: --preset proxies"
         echo "... \`pp_march_divisor=2\`: $small"
-        for value in pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=5 pp_cell_weight=one pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=4 pp_range=1000 \
-            pp_grid=6 pp_grid=12 pp_grid=32 pp_count=8192 pp_count=24000 pp_count=170000 pp_radius=1 pp_radius=3 pp_gather_divisor=1 pp_gather_divisor=4 pp_march_divisor=1; do
+        for value in pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=5 pp_filter_test=printed pp_cell_weight=one pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=1000 \
+            pp_grid=6 pp_grid=12 pp_grid=32 pp_count=24000 pp_count=170000 pp_radius=1 pp_radius=3 pp_gather_divisor=4 pp_march_divisor=1; do
             echo "... \`$value\`: $small --set $value"
         done
         echo "\`proxies-paper\`: --preset proxies-paper"
         echo "... \`pp_filter_radius=0\`: --preset proxies-paper --set pp_filter_radius=0"
-        echo "... \`pp_rays=256\`: --preset proxies-paper --set pp_rays=256"
         echo "\`ism\`: --preset ism"
         echo "... \`ism_fill=none\`: --preset ism --set ism_fill=none"
-        echo "... \`ism_fill=splat\`: --preset ism --set ism_fill=splat"
-        echo "... \`ism_interleave=false\`: --preset ism --set ism_interleave=false"
-        echo "... \`ism_resolution=128\`: --preset ism --set ism_resolution=128"
     } >"$CHOICES"
 fi
 

@@ -11,7 +11,7 @@ frames="--frames 0:${FRAMES:-12} --fps 24 --size ${SIZE:-160x90} --quiet"
 cases=${CASES:-"moving-sun moving-dragons moving-out"}
 mkdir -p "$out"
 cp docs/examples/sequences/*.json "$out" # a view's files are looked for beside it
-ln -sf "$scenes/sponza.glb" "$scenes/dragon_lowres.glb" "$out"
+ln -sf "$scenes/sponza.glb" "$scenes/dragon_lowres.glb" "$scenes/cornell_box.glb" "$out"
 
 # A row of the table: choice, and of the irradiance F, the truth's, F_e, V, J, RMSE of the middle frame.
 row() {

@@ -296,7 +296,7 @@ const std::vector<PassRow> kRows = {
      .describe = describeProxyCells, .record = keepShaped<ProxyCells>, .rerun = rerunProxyCells},
     {.family = "pp march", .stages = {"proxies"}, .exists = ofProxies, .reads = {"tables", "scene", "gbuffer", "pp cells"},
      .describe = describeMarched, .record = keepLists<kMarched>, .rerun = rerunProxyMarch},
-    {.family = "pp filter", .stages = {"proxies"}, .exists = filtersLists, .reads = {"gbuffer", "pp march"},
+    {.family = "pp filter", .stages = {"proxies"}, .exists = filtersLists, .reads = {"scene", "gbuffer", "pp cells", "pp march"},
      .describe = describeFiltered, .record = keepLists<kFilteredLists>, .rerun = rerunProxyFilter},
     {.family = "pp gather", .stages = {"proxies", "vpl"}, .exists = ofProxies, .reads = {"scene", "gbuffer", "pp cells", "pp march", "pp filter"},
      .describe = describeListed, .record = keepListed, .rerun = rerunProxyGather},

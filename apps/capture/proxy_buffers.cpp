@@ -25,6 +25,7 @@ void addLists(Catalogue& out, const DescribedFrame& frame, const std::string& na
     out.add(name + "_first", Dtype::u4, {count + 1}, {"block"}, {}, {"cells of block b, row by row, are cells[first[b]] .. cells[first[b + 1] - 1]", "", ""},
             tolerances::kLists);
     out.add(name + "_cells", Dtype::u4, {count}, {"entry"}, {}, {"hash (Eq. 1) of a cell that " + which + ", rising", "", ""}, tolerances::kLists);
+    out.add(name + "_hits", Dtype::u4, {count}, {"entry"}, {}, {"diffuse rays of the list that met the cell", "", ""}, tolerances::kLists);
     out.add(name + "_opacity", Dtype::f4, {count}, {"block"}, {}, {"part of the pixel's own diffuse rays that met a disc", "", ""}, tolerances::kConeOpacity);
     out.add(name + "_lobe_opacity", Dtype::f4, {count}, {"block"}, {}, {"the same of its rays in the specular lobe; 1 where it has none", "", ""},
             tolerances::kConeOpacity);
@@ -99,8 +100,11 @@ void describeProxyCells(Catalogue& out, const DescribedFrame& frame, std::size_t
     out.add("pp.quads", Dtype::f4, {quads, kQuadRows, kLanes}, {"quad", "row", "lane"}, {},
             {"x, y, z; nx, ny, nz; red, green, blue of four proxies; 0 where there is none", kWorldSpace, ""}, tolerances::kPoints);
     out.add("pp.number", Dtype::u4, {quads, kLanes}, {"quad", "lane"}, {}, {"of the proxy, as placed; 2^32 - 1: none", "", ""}, tolerances::kLists);
-    out.add("pp.cell_light", Dtype::f4, {cells, kLightFloats}, {"cell", "number"}, {},
-            {"mean, along x, y, z (r, g, b, area each), centroid, lit area: W/sr times pre_exposure, m^2, m, m^2", "", ""}, tolerances::kCellSums);
+    out.add(
+        "pp.cell_light", Dtype::f4, {cells, kLightFloats}, {"cell", "number"}, {},
+        {"mean, along x, y, z (r, g, b, area each), centroid, lit area, greatest radiance: W/sr times pre_exposure, m^2; m; m^2; W/(m^2 sr) times pre_exposure",
+         "", ""},
+        tolerances::kCellSums);
     out.add("pp.cell_bounds", Dtype::f4, {cells, 6}, {"cell", "number"}, {}, {"least and greatest corner of the cell's discs", kWorldSpace, "m"},
             tolerances::kCellSums);
 }
@@ -161,6 +165,7 @@ void shapeBuffers(const ProxyCells& cells, std::vector<Buffer>& buffers)
 void shapeBuffers(const VisibilityLists& lists, const std::string& name, std::vector<Buffer>& buffers)
 {
     shape(buffers, name + "_cells", {lists.cells.size()});
+    shape(buffers, name + "_hits", {lists.hits.size()});
 }
 
 void shapeBuffers(const VirtualLights& lights, std::vector<Buffer>& buffers)
@@ -203,6 +208,7 @@ void toBuffers(const VisibilityLists& lists, const std::string& name, std::vecto
 {
     fit(buffers, name + "_first", lists.first);
     fit(buffers, name + "_cells", lists.cells);
+    fit(buffers, name + "_hits", lists.hits);
     fit(buffers, name + "_opacity", lists.opacity);
     fit(buffers, name + "_lobe_opacity", lists.lobeOpacity);
     fit(buffers, name + "_rays", lists.rays);
@@ -273,6 +279,7 @@ VisibilityLists listsFromCapture(const Capture& capture, const std::string& name
     lists.divisor = blocks.divisor;
     lists.first = copyFrom<std::uint32_t>(capture, name + "_first", Dtype::u4, count + 1);
     lists.cells = allOf<std::uint32_t>(capture, name + "_cells", Dtype::u4);
+    lists.hits = copyFrom<std::uint32_t>(capture, name + "_hits", Dtype::u4, lists.cells.size());
     lists.opacity = copyFrom<float>(capture, name + "_opacity", Dtype::f4, count);
     lists.lobeOpacity = copyFrom<float>(capture, name + "_lobe_opacity", Dtype::f4, count);
     lists.rays = copyFrom<std::uint32_t>(capture, name + "_rays", Dtype::u4, count);

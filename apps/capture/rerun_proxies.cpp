@@ -50,8 +50,8 @@ void rerunProxyMarch(const Capture& inputs, std::size_t, Rerun& made)
 
 void rerunProxyFilter(const Capture& inputs, std::size_t, Rerun& made)
 {
-    const std::size_t cells = makeCellGrid(extentOf(sceneFromCapture(inputs)), inputs.settings.proxies.grid).count();
-    toBuffers(filterVisibility(listsFromCapture(inputs, kMarched, cells), gbufferFromCapture(inputs), inputs.settings.proxies.filterRadius, cells),
+    const ProxyCells cells = proxyCellsFromCapture(inputs);
+    toBuffers(filterVisibility(listsFromCapture(inputs, kMarched, cells.grid.count()), gbufferFromCapture(inputs), cells, inputs.settings.proxies),
               kFilteredLists, made.outputs);
 }
 

@@ -90,6 +90,7 @@ CellLight lightOf(const Keyed& sorted, const PointProxies& proxies, const ProxyL
     glm::dvec4 mean(0.0), along[3] = {glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(0.0)};
     glm::dvec3 byFlux(0.0), all(0.0);
     double flux = 0.0;
+    Vec3 brightest(0.0f);
     for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t number = sorted.number(i);
         const glm::dvec4 strength = glm::dvec4(glm::dvec3(light.radiance[number]), 1.0) * double(proxies.area);
@@ -99,10 +100,12 @@ CellLight lightOf(const Keyed& sorted, const PointProxies& proxies, const ProxyL
         byFlux += own * glm::dvec3(proxies.positions[number]);
         all += glm::dvec3(proxies.positions[number]);
         flux += own;
+        brightest = glm::max(brightest, light.radiance[number]);
     }
     CellLight out{.mean = Vec4(mean), .along = {Vec4(along[0]), Vec4(along[1]), Vec4(along[2])}, .centroid = Vec3(0.0f)};
     out.centroid = Vec3(flux > 0.0 ? byFlux / flux : all / double(end - begin));
     out.litArea = proxies.area * float(litEnd - begin);
+    out.brightest = brightest;
     return out;
 }
 

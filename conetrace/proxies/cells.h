@@ -45,6 +45,7 @@ struct CellLight {
     Vec4 along[3]{Vec4(0.0f), Vec4(0.0f), Vec4(0.0f)};  ///< x, y, z
     Vec3 centroid{0.0f};                                ///< of its proxies by flux; where none shines, of all
     float litArea = 0.0f;                               ///< m^2, of those that shine
+    Vec3 brightest{0.0f};                               ///< greatest radiance of one of them, a channel; times the pre-exposure
 
     /// W/sr times the pre-exposure; a sum that falls below 0 is none.
     Vec4 intensity(const Vec3& w) const { return glm::max(Vec4(0.0f), mean + along[0] * w.x + along[1] * w.y + along[2] * w.z); }
@@ -69,7 +70,7 @@ struct ProxyCells {
 template <class Visit>
 void forEachArray(const ProxyCells& cells, Visit&& visit)
 {
-    // A proxy on a GPU: position in float32, normal in 10 bits a component, radiance. A cell: 16 coefficients, centroid and area in float32.
+    // A proxy on a GPU: position in float32, normal in 10 bits a component, radiance. A cell: 16 coefficients, centroid, area and brightest in float32.
     constexpr std::size_t kPositionNormal = 16, kHalf4 = 8, kFloat4 = 16;
     visit(cells.first, ArrayTraits{cells.first.size() * sizeof(std::uint32_t)});
     visit(cells.litEnd, ArrayTraits{cells.litEnd.size() * sizeof(std::uint32_t)});

@@ -86,23 +86,15 @@ float blendOf(const std::vector<T>& values, const ListWeights& weights)
     return sum;
 }
 
-LitSurface surfaceAt(const GatherWorld& world, std::size_t pixel)
-{
-    const GBuffer& g = world.gbuffer;
-    LitSurface surface{.position = g.position.texels[pixel], .normal = g.normal.texels[pixel]};
-    const Vec3 toEye = glm::normalize(directionToEye(world.camera, surface.position));
-    surface.mirror = glm::normalize(mirrorDirection(surface.normal, toEye));
-    return surface;
-}
-
 /// Eq. 7's sum over what is listed, over its own weights and times the part of the lobe that meets anything; or over the whole lobe's.
-Vec3 specularOf(const GatherWorld& world, const ListWeights& weights, const LitSurface& surface, std::size_t pixel)
+Vec3 specularOf(const GatherWorld& world, const ListWeights& weights, LitSurface surface, std::size_t pixel)
 {
+    surface.mirror = glm::normalize(mirrorDirection(surface.normal, glm::normalize(directionToEye(world.camera, surface.position))));
     if (!(glm::dot(surface.mirror, world.gbuffer.geometricNormal.texels[pixel]) > 0.0f)) return Vec3(0.0f);
     const float roughness = world.gbuffer.roughness.texels[pixel];
     const VplLobeWeight lobe(world.vpl, phongExponent(roughness));
     LobeSum sum;
-    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight) {
+    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float) {
         const LobeSum own = isNear(world.cells, cell, surface.position, world.settings.range) ? lobeByProxies(world.cells, cell, surface, world.vpl, lobe)
                                                                                               : lobeByHarmonics(world.cells, cell, surface, world.vpl, lobe);
         sum.radiance += weight * own.radiance;
@@ -150,31 +142,44 @@ ListWeights listWeights(const GBuffer& gbuffer, int divisor, int x, int y)
     return found;
 }
 
-Vec3 irradianceByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
 {
     const VplNear near = vplNear(vpl, cells.area);
-    Float4 red{}, green{}, blue{};
-    for (std::uint32_t q = cells.first[cell]; q < cells.litEnd[cell]; ++q) {
+    Float4 red{}, green{}, blue{}, all{};
+    for (std::uint32_t q = cells.first[cell]; q < cells.first[cell + 1]; ++q) {
         const ProxyQuad& quad = cells.quads[q];
         const QuadView view(quad, surface);
         const Float4 geometry = atMost(view.receiver * view.light / (view.distance2 * (view.distance2 + near.softening)), near.most);
         red += quad.red * geometry;
         green += quad.green * geometry;
         blue += quad.blue * geometry;
+        all += geometry;
     }
-    return Vec3(sumOf(red), sumOf(green), sumOf(blue)) * cells.area;
+    return {Vec3(sumOf(red), sumOf(green), sumOf(blue)) * cells.area, sumOf(all) * cells.area / kPi};
 }
 
-Vec3 irradianceByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
 {
     const CellLight& light = cells.lights[cell];
-    if (!(light.litArea > 0.0f)) return Vec3(0.0f);
+    if (!(light.litArea > 0.0f)) return {};
     const VplNear near = vplNear(vpl, light.litArea);
     const Vec3 toLight = light.centroid - surface.position;
     const float d2 = std::max(glm::dot(toLight, toLight), kLeastDistance2), distance = std::sqrt(d2);
     const float cosine = glm::dot(surface.normal, toLight) / distance;
-    if (!(cosine > 0.0f)) return Vec3(0.0f);
-    return Vec3(light.intensity(-toLight / distance)) * std::min(near.most, cosine / (d2 + near.softening));
+    if (!(cosine > 0.0f)) return {};
+    const Vec4 sums = light.intensity(-toLight / distance) * std::min(near.most, cosine / (d2 + near.softening));
+    return {Vec3(sums), sums.w / kPi};
+}
+
+Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float share)
+{
+    const Vec3 most = kPi * light.brightest;
+    Vec3 mean(0.0f);
+    for (int c = 0; c < 3; ++c) {
+        if (!(whole.irradiance[c] > 0.0f)) continue;
+        mean[c] = whole.irradiance[c] < most[c] * whole.formFactor ? whole.irradiance[c] / whole.formFactor : most[c];
+    }
+    return share * mean;
 }
 
 LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe)
@@ -210,37 +215,23 @@ LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSu
     return {Vec3(sums), sums.w};
 }
 
-float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays)
-{
-    const CellLight& light = cells.lights[cell];
-    const Vec3 toCell = light.centroid - surface.position;
-    const float d2 = std::max(glm::dot(toCell, toCell), kLeastDistance2), distance = std::sqrt(d2);
-    const float cosine = std::max(0.0f, glm::dot(surface.normal, toCell) / distance);
-    const float byArea = light.intensity(-toCell / distance).w * cosine / (d2 + light.litArea / kPi);
-    // A quarter of flux and area are in `mean`.
-    const float meanRadiance = 4.0f * (light.mean.x + light.mean.y + light.mean.z) / light.litArea;
-    const float byLight = (irradiance.x + irradiance.y + irradiance.z) / meanRadiance;
-    return std::max(kLeastChance, 1.0f - fastExp2(-kLog2E * rays * std::max(byArea, byLight) / kPi));
-}
-
 ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int y)
 {
     const ProxyCells& cells = world.cells;
     const std::size_t pixel = world.gbuffer.position.index(x, y);
-    const LitSurface surface = surfaceAt(world, pixel);
+    const LitSurface surface{.position = world.gbuffer.position.texels[pixel], .normal = world.gbuffer.normal.texels[pixel]};
     const ListWeights weights = listWeights(world.gbuffer, world.lists.divisor, x, y);
 
     // Eq. 5 and 6.
     ProxyPixel out;
-    const float rays = blendOf(world.lists.rays, weights);
-    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight) {
-        if (!(cells.lights[cell].litArea > 0.0f)) return;
+    const bool bySeen = world.settings.cellWeight == ProxyCellWeight::seen;
+    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
+        if (!(cells.lights[cell].litArea > 0.0f) || (bySeen && !(share > 0.0f))) return;
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
-        const Vec3 light = near ? irradianceByProxies(cells, cell, surface, world.vpl) : irradianceByHarmonics(cells, cell, surface, world.vpl);
-        if (world.settings.cellWeight == ProxyCellWeight::chance) weight /= chanceOfMeeting(cells, cell, surface, light, rays);
-        out.irradiance += weight * light;
+        const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
+        out.irradiance += bySeen ? irradianceOfSeen(cells.lights[cell], whole, share) : weight * whole.irradiance;
         ++out.cells;
-        if (near) out.proxies += 4 * (cells.litEnd[cell] - cells.first[cell]);
+        if (near) out.proxies += 4 * (cells.first[cell + 1] - cells.first[cell]);
     });
     out.irradiance /= cells.preExposure;
     out.opacity = blendOf(world.lists.opacity, weights);

@@ -33,34 +33,38 @@ struct ListWeights {
 inline constexpr int kSearchedBlocks = 4;
 ListWeights listWeights(const GBuffer& gbuffer, int divisor, int x, int y);
 
-/// visit(cell, weight) for the cells of the four lists, rising; the weight is the sum over the lists that hold the cell. So sum_p w(p) L(V'_p) of Eq. 5
-/// evaluates a cell once in place of up to four times.
+/// visit(cell, weight, share) for the cells of the four lists, rising; the weight is the sum over the lists that hold the cell, the share that of the weights
+/// times the part of each list's diffuse rays that met it. So sum_p w(p) L(V'_p) of Eq. 5 evaluates a cell once in place of up to four times.
 template <class Visit>
 void forListedCells(const VisibilityLists& lists, const ListWeights& weights, const Visit& visit)
 {
     constexpr std::uint32_t kEnd = ~std::uint32_t(0);
-    std::array<std::span<const std::uint32_t>, 4> rest;
-    for (std::size_t k = 0; k < 4; ++k)
-        if (weights.weight[k] > 0.0f) rest[k] = lists.of(weights.block[k]);
+    std::array<std::uint32_t, 4> at{}, end{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (!(weights.weight[k] > 0.0f)) continue;
+        at[k] = lists.first[weights.block[k]];
+        end[k] = lists.first[weights.block[k] + 1];
+    }
     for (;;) {
         std::uint32_t cell = kEnd;
-        for (const auto& list : rest)
-            if (!list.empty()) cell = std::min(cell, list.front());
-        if (cell == kEnd) return;
-        float weight = 0.0f;
         for (std::size_t k = 0; k < 4; ++k)
-            if (!rest[k].empty() && rest[k].front() == cell) {
+            if (at[k] < end[k]) cell = std::min(cell, lists.cells[at[k]]);
+        if (cell == kEnd) return;
+        float weight = 0.0f, share = 0.0f;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (at[k] < end[k] && lists.cells[at[k]] == cell) {
                 weight += weights.weight[k];
-                rest[k] = rest[k].subspan(1);
+                share += weights.weight[k] * lists.share(weights.block[k], at[k]);
+                ++at[k];
             }
-        visit(cell, weight);
+        visit(cell, weight, share);
     }
 }
 
 /// A surface that is lit.
 struct LitSurface {
     Vec3 position{0.0f}, normal{0.0f};
-    Vec3 mirror{0.0f};  ///< unit; where the specular lobe looks
+    Vec3 mirror{0.0f};  ///< unit; where the specular lobe looks, read by it alone
 };
 
 /// Is the cell nearer than R of Eq. 6, so that it shines proxy by proxy?
@@ -71,15 +75,19 @@ inline bool isNear(const ProxyCells& cells, std::uint32_t cell, const Vec3& posi
     return glm::dot(d, d) < reach * reach;
 }
 
-/// f(v) of Eq. 6: irradiance by a cell's proxies, or by its spherical harmonics; W/m^2 times the pre-exposure.
-Vec3 irradianceByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
-Vec3 irradianceByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
+/// A cell as a surface would see it with nothing between.
+struct WholeCell {
+    Vec3 irradiance{0.0f};    ///< f(v) of Eq. 6, W/m^2 times the pre-exposure
+    float formFactor = 0.0f;  ///< F: the part of a cosine-weighted hemisphere's rays that its proxies, lit or not, would stop
+};
+/// By its proxies, or by its spherical harmonics.
+WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
+WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 
-/// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its
-/// proxies by harmonics, but no less than its light says: irradiance over pi times the mean radiance of those that shine. A cell that is listed over its chance
-/// to be is right in the mean (Horvitz and Thompson 1952), so that small cells, of which rays miss most, lose no light (pp_cell_weight).
-float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
-inline constexpr float kLeastChance = 1e-6f;
+/// What a cell gives of which a part is seen: V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as what it is, so that
+/// no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors that f and F have in
+/// common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
+Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float share);
 
 /// Sums over solid angles: radiance by w W, and w W, for the weight w of Eq. 7 and the solid angle W = a cos' / (d^2 + r^2) of a proxy, lit or not, above the
 /// surface's horizon. Their quotient is the mean radiance over the part of the lobe that sees proxies.

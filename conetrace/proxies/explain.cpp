@@ -34,25 +34,27 @@ std::string cellsText(const GatherWorld& world, const ListWeights& weights, cons
 {
     const ProxyCells& cells = world.cells;
     std::string text =
-        "\ncells in them; irradiance by their proxies, or by their spherical harmonics beyond pp_range (Eq. 6)\n"
-        "       cell  weight   distance  lit  unlit  by         irradiance\n";
+        "\ncells in them, and the part of each that rays say is seen; irradiance by their proxies, or by their spherical harmonics beyond pp_range (Eq. 6)\n"
+        "       cell  weight  seen     distance  lit  unlit  by         irradiance\n";
     float most = 0.0f;
     std::size_t dark = 0;
-    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight) {
+    forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
         if (!(cells.lights[cell].litArea > 0.0f)) {
             ++dark;
             return;
         }
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
-        const Vec3 light =
-            weight / cells.preExposure * (near ? irradianceByProxies(cells, cell, surface, world.vpl) : irradianceByHarmonics(cells, cell, surface, world.vpl));
+        const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
+        const bool bySeen = world.settings.cellWeight == ProxyCellWeight::seen;
+        const Vec3 light = (bySeen ? irradianceOfSeen(cells.lights[cell], whole, share) : weight * whole.irradiance) / cells.preExposure;
         const IVec3 at = cellOf(cells.grid, cell);
         std::size_t lit = 0, unlit = 0;
         for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot)
             if (cells.numbers[slot] != kNoProxy) ++(slot < std::size_t(cells.litEnd[cell]) * 4 ? lit : unlit);
-        text += formatted("  %3d,%3d,%3d  %.4f  %8.4f  %4zu  %4zu  %s  %.4g %.4g %.4g\n", at.x, at.y, at.z, double(weight),
-                          double(glm::length(cells.lights[cell].centroid - surface.position)), lit, unlit, near ? "proxies  " : "harmonics", double(light.x),
-                          double(light.y), double(light.z));
+        text +=
+            formatted("  %3d,%3d,%3d  %.4f  %.5f  %8.4f  %4zu  %4zu  %s  %.4g %.4g %.4g\n", at.x, at.y, at.z, double(weight),
+                      double(whole.formFactor > 0.0f ? share / whole.formFactor : 0.0f), double(glm::length(cells.lights[cell].centroid - surface.position)),
+                      lit, unlit, near ? "proxies  " : "harmonics", double(light.x), double(light.y), double(light.z));
         if (near && light.x + light.y + light.z > most) {
             most = light.x + light.y + light.z;
             brightest = cell;
@@ -98,7 +100,7 @@ std::string explainProxies(const GatherInput& input, int x, int y)
     const GatherWorld world{.gbuffer = gbuffer,
                             .camera = input.camera,
                             .cells = cells,
-                            .lists = seen.filtered,
+                            .lists = seen.lists(),
                             .settings = input.settings.proxies,
                             .vpl = input.settings.vpl,
                             .lobe = lobe ? &*lobe : nullptr};

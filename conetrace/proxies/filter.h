@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conetrace/frame/gbuffer.h"
+#include "conetrace/proxies/cells.h"
 #include "conetrace/proxies/lists.h"
 
 #include <cmath>
@@ -20,7 +21,20 @@ inline bool lendsVisibility(const GBuffer& g, std::size_t pixel, std::size_t nei
            glm::dot(g.normal.texels[pixel], g.normal.texels[neighbour]) > kFilterCosine;
 }
 
-/// V'_p(x, y): the union of V_p(x + i, y + j) over |i|, |j| <= radius where delta_d delta_n = 1. Opacities stay the pixel's own.
-VisibilityLists filterVisibility(const VisibilityLists& lists, const GBuffer& gbuffer, int radius, std::size_t cells);
+/// With pp_filter_test=surface a block takes the list of another only if
+/// - both are of one surface (frame/same_surface.h), which goes on from block to block along one of the window's shortest ways between them, all pixels
+/// between:
+///   depth and normal are alike on both sides of a thin wall too;
+/// - it is next to it, or nearer than this part of the harmonic mean distance R of what either's rays met, over which light changes little (Ward, Rubinstein
+/// and
+///   Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988).
+inline constexpr float kFilterReach = 0.15f;
+
+/// 1/R of each block, 1/m: the mean over its diffuse rays of 1 / distance, to the centroid of the cell that a ray met, no nearer than a proxy's radius.
+std::vector<float> nearnessOfBlocks(const VisibilityLists& lists, const GBuffer& gbuffer, const ProxyCells& cells);
+
+/// V'_p(x, y): the union of V_p(x + i, y + j) over |i|, |j| <= pp_filter_radius of the blocks that lend theirs; hits and rays are summed. Opacities stay the
+/// pixel's own.
+VisibilityLists filterVisibility(const VisibilityLists& lists, const GBuffer& gbuffer, const ProxyCells& cells, const ProxySettings& settings);
 
 }  // namespace lrsm

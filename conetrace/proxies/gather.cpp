@@ -22,10 +22,8 @@ ProxyVisibility seeCells(const GatherInput& input, const ProxyCells& cells, Pass
         .gbuffer = input.gbuffer, .camera = input.camera, .cells = cells, .rays = rays, .settings = settings, .specular = input.needs.specular};
     ProxyVisibility seen;
     seen.marched = log.run("pp march", kSurfacePass, [&] { return marchShadowRays(world); });
-    seen.filtered =
-        settings.filterRadius > 0
-            ? log.run("pp filter", kSurfacePass, [&] { return filterVisibility(seen.marched, input.gbuffer, settings.filterRadius, cells.grid.count()); })
-            : seen.marched;
+    if (settings.filterRadius > 0)
+        seen.filtered = log.run("pp filter", kSurfacePass, [&] { return filterVisibility(seen.marched, input.gbuffer, cells, settings); });
     return seen;
 }
 
@@ -39,7 +37,7 @@ Gathered gatherProxies(const GatherInput& input, PassLog& log)
     const GatherWorld world{.gbuffer = input.gbuffer,
                             .camera = input.camera,
                             .cells = cells,
-                            .lists = seen.filtered,
+                            .lists = seen.lists(),
                             .settings = settings,
                             .vpl = input.settings.vpl,
                             .lobe = lobe ? &*lobe : nullptr};

@@ -4,6 +4,8 @@
 #include "conetrace/proxies/filter.h"
 #include "conetrace/proxies/march.h"
 
+#include <optional>
+
 /// method = proxies, of [P], "voxelized point proxies" (2014): points stand for the surfaces, are lit by the lights' maps and hashed into cells. Sparse shadow
 /// rays find the cells that every few pixels see, the Visibility Filter joins their lists, and these cells light the pixels.
 namespace lrsm {
@@ -13,8 +15,9 @@ ProxyCells buildProxyCells(const GatherInput& input, PassLog& log);
 
 /// Who sees what.
 struct ProxyVisibility {
-    VisibilityLists marched;   ///< V_p
-    VisibilityLists filtered;  ///< V'_p; with pp_filter_radius=0 the same
+    VisibilityLists marched;                  ///< V_p
+    std::optional<VisibilityLists> filtered;  ///< V'_p; none with pp_filter_radius=0
+    const VisibilityLists& lists() const { return filtered ? *filtered : marched; }
 };
 /// The passes "pp march" and, where there is a filter, "pp filter".
 ProxyVisibility seeCells(const GatherInput& input, const ProxyCells& cells, PassLog& log);

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 /// Which cells the marched pixels see: V_p of [P] Sec. 3.1.
@@ -19,10 +20,13 @@ struct VisibilityLists {
     int divisor = 1;                   ///< edge of a block, pixels
     std::vector<std::uint32_t> first;  ///< list of block b: cells[first[b]] .. cells[first[b + 1] - 1]
     std::vector<std::uint32_t> cells;
+    std::vector<std::uint32_t> hits;  ///< of each of `cells`: how many of the list's diffuse shadow rays met it
     std::vector<float> opacity;       ///< of each block's pixel: part of its diffuse shadow rays that met a disc
     std::vector<float> lobeOpacity;   ///< the same of its rays in the specular lobe; 1 where it has none
     std::vector<std::uint32_t> rays;  ///< diffuse shadow rays that a block's list is of; of a filtered one those of all lists joined
 
+    /// The part of block b's diffuse rays that met the cell of an entry of its list.
+    float share(std::size_t block, std::size_t entry) const { return rays[block] > 0 ? float(hits[entry]) / float(rays[block]) : 0.0f; }
     std::span<const std::uint32_t> of(std::size_t block) const { return std::span(cells).subspan(first[block], first[block + 1] - first[block]); }
     std::size_t size() const { return opacity.size(); }
 };
@@ -33,6 +37,7 @@ void forEachArray(const VisibilityLists& lists, Visit&& visit)
     const auto visitAll = [&](const auto& array) { visit(array, ArrayTraits{array.size() * sizeof(array[0])}); };
     visitAll(lists.first);
     visitAll(lists.cells);
+    visitAll(lists.hits);
     visitAll(lists.opacity);
     visitAll(lists.lobeOpacity);
     visitAll(lists.rays);
@@ -43,23 +48,27 @@ inline Counters countersOf(const VisibilityLists& lists)
     return {{"marched_pixels", double(lists.size())}, {"listed_cells", double(lists.cells.size())}};
 }
 
-/// A set of cells that is filled and emptied again and again; comes out in order.
+/// A set of cells and how many rays met each, filled and emptied again and again; comes out in order.
 class CellSet {
   public:
-    explicit CellSet(std::size_t cells) : words_((cells + 63) / 64) {}
-    void add(std::uint32_t cell)
+    explicit CellSet(std::size_t cells) : words_((cells + 63) / 64), hits_(cells, 0) {}
+    void add(std::uint32_t cell, std::uint32_t hits)
     {
+        hits_[cell] += hits;
         std::uint64_t& word = words_[cell / 64];
         if (word == 0) touched_.push_back(cell / 64);
         word |= std::uint64_t(1) << (cell % 64);
     }
-    /// Appends the cells to `out`, rising, and is empty then.
-    void moveTo(std::vector<std::uint32_t>& out)
+    /// Appends the cells, rising, and their hits, and is empty then.
+    void moveTo(VisibilityLists& out)
     {
         std::sort(touched_.begin(), touched_.end());
         for (const std::uint32_t index : touched_) {
-            for (std::uint64_t word = words_[index]; word != 0; word &= word - 1)
-                out.push_back(index * 64 + static_cast<std::uint32_t>(std::countr_zero(word)));
+            for (std::uint64_t word = words_[index]; word != 0; word &= word - 1) {
+                const std::uint32_t cell = index * 64 + static_cast<std::uint32_t>(std::countr_zero(word));
+                out.cells.push_back(cell);
+                out.hits.push_back(std::exchange(hits_[cell], 0u));
+            }
             words_[index] = 0;
         }
         touched_.clear();
@@ -67,6 +76,7 @@ class CellSet {
 
   private:
     std::vector<std::uint64_t> words_;
+    std::vector<std::uint32_t> hits_;     ///< by cell
     std::vector<std::uint32_t> touched_;  ///< words that are not 0
 };
 

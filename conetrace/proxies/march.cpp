@@ -54,10 +54,10 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
                     const Vec3 origin = rayStart(world, pixel);
                     forShadowRays(world, pixel, column, int(row), [&](const Vec3& direction, bool isDiffuse) {
                         const std::uint32_t cell = cellMet(world.cells, origin, direction);
-                        if (cell != kNoCell) seen.add(cell);
+                        if (cell != kNoCell) seen.add(cell, isDiffuse ? 1u : 0u);
                         (isDiffuse ? diffuse : lobe).add(cell != kNoCell);
                     });
-                    seen.moveTo(out.cells);
+                    seen.moveTo(out);
                 }
                 out.first.push_back(static_cast<std::uint32_t>(out.cells.size()));
                 out.opacity.push_back(diffuse.partMet(0.0f));

@@ -13,12 +13,24 @@ const PassReport* reportOf(const MemoryQuestion& question, const std::string& pa
     return nullptr;
 }
 
-MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid)
+/// Cells that hold proxies: these are placed for it, since neither the grid nor their number comes near it (a tenth to a half of the smaller).
+std::size_t occupiedCells(const MemoryQuestion& question, const CellGrid& grid)
+{
+    const Settings& settings = question.settings;
+    const PointProxies proxies = placeProxies(question.scene, settings.proxies, settings.surface.textureFilter);
+    CellSet seen(grid.count());
+    for (const Vec3& position : proxies.positions) seen.add(grid.hash(grid.cellAt(position)), 1);
+    VisibilityLists all;
+    seen.moveTo(all);
+    return all.cells.size();
+}
+
+MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid, std::size_t occupied)
 {
     const ProxySettings& settings = question.settings.proxies;
     const PassReport* found = reportOf(question, "pp cells");
     // Two quads a cell may not be full.
-    const std::size_t most = std::size_t(settings.count) / 4 + 2 * std::min(grid.count(), std::size_t(settings.count));
+    const std::size_t most = std::size_t(settings.count) / 4 + 2 * occupied;
     const std::size_t quads = found ? std::size_t(counterSum(found->counters, "quads")) : most;
     ProxyCells like;
     like.half = settings.storage == Storage::gpu;
@@ -40,7 +52,7 @@ MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, cons
     const std::size_t count = std::size_t(blocks.columns()) * std::size_t(blocks.rows());
     const PassReport* found = reportOf(question, pass);
     const std::size_t cells = found ? std::size_t(counterSum(found->counters, "listed_cells")) : question.unknowns == Unknowns::least ? 0 : count * mostACell;
-    const std::size_t bytes = (count + 1 + cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t));
+    const std::size_t bytes = (count + 1 + 2 * cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t));
     return {.structure = structure,
             .pass = pass,
             .detail = std::string(found ? "" : "up to ") + std::to_string(cells) + " cells",
@@ -57,11 +69,12 @@ std::vector<MemoryRow> predictProxies(const MemoryQuestion& question)
     const ProxySettings& settings = question.settings.proxies;
     const CellGrid grid = makeCellGrid(extentOf(question.scene), settings.grid);
     const std::size_t rays = std::size_t(settings.rays + (question.needs.specular ? settings.lobeRays : 0));
-    std::vector<MemoryRow> rows = {cellsRow(question, grid)};
-    rows.push_back(listsRow(question, "pp march", "lists", std::min(rays, grid.count())));
+    const std::size_t occupied = question.rendered || question.unknowns == Unknowns::least ? 0 : occupiedCells(question, grid);
+    std::vector<MemoryRow> rows = {cellsRow(question, grid, occupied)};
+    rows.push_back(listsRow(question, "pp march", "lists", std::min(rays, occupied)));
     if (settings.filterRadius > 0) {
         const auto window = std::size_t(2 * settings.filterRadius + 1);
-        rows.push_back(listsRow(question, "pp filter", "filtered", std::min(rays * window * window, grid.count())));
+        rows.push_back(listsRow(question, "pp filter", "filtered", std::min(rays * window * window, occupied)));
     }
     return rows;
 }

@@ -344,10 +344,15 @@ void addProxyRows(std::vector<SettingRow>& rows)
         powersOfTwo(1, 8)));
     rows.push_back(whole<&P::filterRadius>(
         {"pp_filter_radius", "marched pixels", "m = n of Eq. 4, the visibility filter: 3 for a window of 7x7; 0: none", "[P] Sec. 4: 3"}, {0, 8}));
+    rows.push_back(choice<&P::filterTest>({"pp_filter_test", "",
+                                           "whose lists of the window a block takes: those of its own surface, joined to it within the window and near by "
+                                           "what its rays meet; or all of like depth and normal",
+                                           "ours; [P] Eq. 4: printed"},
+                                          {"surface", "printed"}));
     rows.push_back(choice<&P::cellWeight>(
-        {"pp_cell_weight", "", "a listed cell counts over the chance that one of the list's rays meets it, so that missed ones lose no light; or as it is",
+        {"pp_cell_weight", "", "a listed cell counts by the part of it that is seen: the rays that met it over those that would were it all seen; or as it is",
          "ours; [P] Eq. 5: one"},
-        {"chance", "one"}));
+        {"seen", "one"}));
     rows.push_back(real<&P::range>(
         {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
         {0, 1e6f}));

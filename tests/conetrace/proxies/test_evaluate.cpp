@@ -21,7 +21,7 @@ Vec3 irradianceByAll(const ProxyCells& cells, const LitSurface& surface, const V
 {
     Vec3 sum(0.0f);
     for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell)
-        sum += byProxies ? irradianceByProxies(cells, cell, surface, vpl) : irradianceByHarmonics(cells, cell, surface, vpl);
+        sum += (byProxies ? cellByProxies(cells, cell, surface, vpl) : cellByHarmonics(cells, cell, surface, vpl)).irradiance;
     return sum;
 }
 
@@ -47,11 +47,11 @@ TEST_CASE("proxies: one disc on its axis gives pi L r^2 / (d^2 + r^2), at any di
     const ProxyCells cells = sortProxies(scene, one, shining(one, Vec3(1, 2, 3)), {.grid = 1});
     const LitSurface surface{.position = Vec3(0.5f, 0.5f, 0.5f + distance), .normal = Vec3(0, 0, -1)};
     const double r2 = 0.3 / kPiDouble, d2 = double(distance) * double(distance);
-    CHECK(double(irradianceByProxies(cells, 0, surface, {}).z) == Approx(kPiDouble * 3.0 * r2 / (d2 + r2)).epsilon(1e-4));
+    CHECK(double(cellByProxies(cells, 0, surface, {}).irradiance.z) == Approx(kPiDouble * 3.0 * r2 / (d2 + r2)).epsilon(1e-4));
     // Clamped, and bare.
     const double bare = 3.0 * 0.3 / d2;
-    CHECK(double(irradianceByProxies(cells, 0, surface, {.singularity = VplSingularity::none}).z) == Approx(bare).epsilon(1e-4));
-    CHECK(double(irradianceByProxies(cells, 0, surface, {.singularity = VplSingularity::clamp, .clamp = 2.0f}).z) ==
+    CHECK(double(cellByProxies(cells, 0, surface, {.singularity = VplSingularity::none}).irradiance.z) == Approx(bare).epsilon(1e-4));
+    CHECK(double(cellByProxies(cells, 0, surface, {.singularity = VplSingularity::clamp, .clamp = 2.0f}).irradiance.z) ==
           Approx(std::min(bare, 3.0 * 2.0)).epsilon(1e-4));
 }
 
@@ -112,25 +112,52 @@ TEST_CASE("proxies: within a furnace of radiance L every lobe sees L, and irradi
     }
 }
 
-TEST_CASE("proxies: the chance that a ray meets a cell is that of its form factor, and bounds what a cell gives over it", "[proxies]")
+TEST_CASE("proxies: a cell's form factor is the closed form of its surface, lit or not, and what is seen of it counts by the rays that met it", "[proxies]")
 {
     // A square far away, half of its proxies dark: F = cos cos' A / (pi d^2).
     const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}});
     const ProxySettings settings{.count = 1000, .grid = 1};
     const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
-    ProxyLight light = shining(proxies, Vec3(2.0f));
+    ProxyLight light = shining(proxies, Vec3(2.0f, 1.0f, 0.0f));
     for (std::size_t i = 0; i < proxies.size(); i += 2) light.radiance[i] = Vec3(0.0f);
     const ProxyCells cells = sortProxies(scene, proxies, light, settings);
     const LitSurface surface{.position = Vec3(0.5f, 0.5f, 20.0f), .normal = Vec3(0, 0, -1)};
-    const Vec3 irradiance = irradianceByProxies(cells, 0, surface, {});
-    // By harmonics: 3/4 of it at 0 degrees; half of it shines, so that light alone says half.
     const double factor = 1.0 / (kPiDouble * 400.0);
-    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 100.0f)) == Approx(1.0 - std::exp(-100.0 * 0.75 * factor)).epsilon(0.01));
-    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 1e6f)) == Approx(1.0));
-    // Many cells, few rays: what is given over its chance is at most pi L / n.
-    const double most = double((irradiance / chanceOfMeeting(cells, 0, surface, irradiance, 4.0f)).x);
-    CHECK(most <= kPiDouble * 2.0 / 4.0 * 1.01);
-    CHECK(most > double(irradiance.x));
+    const WholeCell exact = cellByProxies(cells, 0, surface, {}), far = cellByHarmonics(cells, 0, surface, {});
+    CHECK(double(exact.formFactor) == Approx(factor).epsilon(0.01));
+    CHECK(double(far.formFactor) == Approx(0.75 * factor).epsilon(0.01));  // order 1 at 0 degrees
+    // Rays find a third of it: half of that shines, whichever way f and F are summed.
+    for (const WholeCell& whole : {exact, far}) {
+        const Vec3 seen = irradianceOfSeen(cells.lights[0], whole, float(factor / 3.0));
+        CHECK(double(seen.x) == Approx(kPiDouble * factor / 3.0).epsilon(0.01));
+        CHECK(double(seen.y) == Approx(kPiDouble * factor / 6.0).epsilon(0.01));
+        CHECK(seen.z == 0.0f);
+    }
+}
+
+TEST_CASE("proxies: what harmonics say of a cell's radiance is no more than its brightest proxy's", "[proxies]")
+{
+    // Two walls back to back: the one that shines looks away, order 1 of both sees little area and much light.
+    const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 0, 0)}});
+    const ProxySettings settings{.count = 400, .grid = 1};
+    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    ProxyLight light = shining(proxies, Vec3(3.0f));
+    for (std::size_t i = 0; i < proxies.size(); ++i)
+        if (proxies.normals[i].z < 0.0f) light.radiance[i] = Vec3(0.0f);
+    const ProxyCells cells = sortProxies(scene, proxies, light, settings);
+    CHECK(cells.lights[0].brightest == Vec3(3.0f));
+    std::mt19937 random(7);
+    std::size_t bounded = 0;
+    for (int k = 0; k < 50; ++k) {
+        const Vec3 away = randomUnit(random);
+        const LitSurface surface{.position = Vec3(0.5f) + 5.0f * away, .normal = -away};
+        const Vec3 seen = irradianceOfSeen(cells.lights[0], cellByHarmonics(cells, 0, surface, {}), 0.25f);
+        REQUIRE(double(seen.x) <= 0.25 * kPiDouble * 3.0 * 1.0001);
+        bounded += double(seen.x) > 0.2499 * kPiDouble * 3.0 ? 1 : 0;
+    }
+    CHECK(bounded > 5);
+    CHECK(irradianceOfSeen(cells.lights[0], {.irradiance = Vec3(1.0f), .formFactor = 0.0f}, 0.5f).y == Approx(0.5 * kPiDouble * 3.0));
+    CHECK(irradianceOfSeen(cells.lights[0], {}, 0.5f) == Vec3(0.0f));
 }
 
 TEST_CASE("virtual lights: Eq. 7 and its integral against double precision", "[proxies]")

@@ -1,4 +1,5 @@
 #include "conetrace/proxies/gather.h"
+#include "conetrace/proxies/memory.h"
 
 #include "conetrace/render.h"
 #include "core/base/parallel.h"
@@ -127,6 +128,7 @@ TEST_CASE("method proxies: what is predicted of a rendered frame is what it held
         ++rows;
         CHECK(after[i].measured == after[i].predicted);
         CHECK(before[i].predicted >= *before[i].measured);
+        CHECK(double(before[i].predicted) <= kListsFactor * double(*before[i].measured));
     }
     CHECK(rows == 3);
 }
