@@ -49,6 +49,16 @@ struct GenericSampler {
     }
 };
 
+/// A lookup in its parts, one a cascade, where the sampler tells them; else as one.
+template <class Sampler, class Visit>
+void forTapParts(const Sampler& sampler, const Vec3& pVoxels, float level, const Visit& visit)
+{
+    if constexpr (requires { sampler.forParts(pVoxels, level, visit); })
+        sampler.forParts(pVoxels, level, visit);
+    else
+        visit(sampler(pVoxels, level));
+}
+
 /// Working memory of one thread's cones, sized once for the longest schedule.
 struct MarchScratch {
     std::vector<Vec3> opticalDepth;  ///< F at each edge of the schedule's taps, by the axis along which it was covered; isotropic: x alone

@@ -171,7 +171,7 @@ ConeResult marchSlab(const ConeWorld& world, const Sampler& sampler, const ConeR
         for (int k = step.firstTap; k < step.firstTap + step.taps; ++k) {
             if (step.readVoxels) {
                 ++counts.voxelTaps;
-                sampler.forParts(ray.originVoxels + ray.direction * schedule.tapCentre(k), step.level, [&](const Vec3& tap) {
+                forTapParts(sampler, ray.originVoxels + ray.direction * schedule.tapCentre(k), step.level, [&](const Vec3& tap) {
                     occupied = occupied || sumOf(tap) > 0.0f;
                     depth += coveredAlong(world.opacity, tap, ray.direction) * (schedule.edges[std::size_t(k) + 1] - schedule.edges[std::size_t(k)]);
                 });

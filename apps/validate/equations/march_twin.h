@@ -17,11 +17,6 @@ struct OpacityField {
 struct FieldSampler {
     const OpacityField& field;
     Vec3 operator()(const Vec3& pVoxels, float level) const { return Vec3(field(DVec3(pVoxels), double(level))); }
-    template <class Visit>
-    void forParts(const Vec3& pVoxels, float level, const Visit& visit) const
-    {
-        visit((*this)(pVoxels, level));
-    }
 };
 
 struct March {
