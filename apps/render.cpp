@@ -87,10 +87,12 @@ void admit(const RenderPlan& plan, const Scene& scene, const Camera& camera, Say
 }
 
 /// One frame to its files, which are not committed.
-Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& scene, const Camera& camera, const std::string& sceneHash, SayOnce& sayOnce)
+Rendered renderTo(OutputFolder& folder, const RenderPlan& plan, const Scene& scene, const Camera& camera, const std::string& sceneHash, SayOnce& sayOnce,
+                  World* kept = nullptr)
 {
     Progress progress(plan.arguments.quiet);
     RenderOptions options = plan.options;
+    options.kept = kept;
     options.watch.progress = [&](const std::string& pass, double fraction) { progress.show(pass, fraction); };
     std::optional<Caches> caches;
     std::optional<SeenProxies> proxies;
@@ -140,6 +142,7 @@ int renderFrames(const RenderPlan& plan, const FrameRange& range)
 {
     const RenderArguments& arguments = plan.arguments;
     SayOnce sayOnce;
+    World world;
     return runSequence({.range = range,
                         .folder = arguments.output,
                         .common = {{"command", "render"},
@@ -154,7 +157,7 @@ int renderFrames(const RenderPlan& plan, const FrameRange& range)
                         .make =
                             [&](const SequenceFrame& frame, OutputFolder& folder) {
                                 admit(plan, frame.scene, frame.camera, sayOnce);
-                                renderTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, sayOnce);
+                                renderTo(folder, plan, frame.scene, frame.camera, frame.sceneHash, sayOnce, range.reuse ? &world : nullptr);
                                 return true;
                             },
                         .earlier = earlierRender()},

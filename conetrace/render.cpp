@@ -6,6 +6,7 @@
 #include "conetrace/frame/irradiance_filter.h"
 #include "conetrace/frame/reduce.h"
 #include "conetrace/frame/smooth_irradiance.h"
+#include "conetrace/frame/world.h"
 #include "conetrace/ism/gather.h"
 #include "conetrace/lrsm/gather.h"
 #include "conetrace/proxies/gather.h"
@@ -14,56 +15,9 @@
 #include "core/base/float_state.h"
 #include "core/scene/check_scene.h"
 #include "core/settings/settings_table.h"
-#include "voxel/cascades.h"
-#include "voxel/voxelize.h"
 
 namespace lrsm {
 namespace {
-
-/// What the eye's passes read, and no more: voxels as far as the method and the direct light go.
-struct World {
-    OpacityPyramid opacity;
-    std::vector<Rsm> rsms;
-    std::vector<DepthMap> shadowMaps;  ///< where shadows are compared with finer depths than the RSMs'
-
-    std::vector<DepthMapView> depths() const
-    {
-        if (!shadowMaps.empty()) return {shadowMaps.begin(), shadowMaps.end()};
-        return {rsms.begin(), rsms.end()};
-    }
-};
-
-/// The voxels, coarsest cascade first. Each has its passes: those of a lone grid, the finer ones by number.
-OpacityPyramid buildVoxels(const Scene& scene, const Camera& camera, const VoxelSettings& settings, bool mips, PassLog& log)
-{
-    OpacityPyramid coarser;
-    const std::vector<VoxelGrid> grids = gridsOf(scene, settings, camera.position);
-    for (int finer = 0; finer < settings.cascades; ++finer) {
-        OpacityPyramid opacity;
-        const VoxelGrid& grid = grids[std::size_t(settings.cascades - 1 - finer)];
-        opacity.base = log.run("voxelize" + cascadeSuffix(finer), mips ? kPassedOn : kWorldPass, [&] { return voxelize(scene, grid, settings.mode); });
-        if (mips) opacity = log.run("voxel mips" + cascadeSuffix(finer), kWorldPass, [&] { return buildPyramid(std::move(opacity.base), settings); });
-        if (finer > 0) linkCascade(opacity, std::move(coarser));
-        coarser = std::move(opacity);
-    }
-    return coarser;
-}
-
-World buildWorld(const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const WorldReads& reads, PassLog& log)
-{
-    World world;
-    const bool mips = reads.mips || settings.direct.shadows == Shadows::cone;
-    if (reads.bits || mips) world.opacity = buildVoxels(scene, camera, settings.voxel, mips, log);
-    for (const Light& light : scene.lights)
-        world.rsms.push_back(log.run("rsm " + std::to_string(world.rsms.size()), kWorldPass,
-                                     [&] { return renderRsm(scene, light, needs, settings.rsm, settings.surface.textureFilter); }));
-    if (!hasShadowMaps(settings.direct)) return world;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        world.shadowMaps.push_back(log.run("shadow " + std::to_string(i), kWorldPass, [&] {
-            return renderDepthMap(scene, scene.lights[i], needs, refine(world.rsms[i].projection, settings.direct.shadowResolution));
-        }));
-    return world;
-}
 
 GBufferSettings gbufferSettings(const Settings& settings, const RenderOptions& options)
 {
@@ -92,7 +46,8 @@ Gathered gatherBlocks(const GatherMethod& method, const GatherInput& input, Pass
                           .gbuffer = reduced.gbuffer,
                           .rsms = input.rsms,
                           .opacity = input.opacity,
-                          .lanes = input.lanes};
+                          .lanes = input.lanes,
+                          .kept = input.kept};
     const Gathered light = gatherPixels(method, few, reduced.blockRows, log);
     return log.run("upsample", kPicturePass, [&] { return upsample(light, reduced, input.gbuffer); });
 }
@@ -157,7 +112,9 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
     PassLog log(options.watch, expectedPasses(scene, settings.voxel.cascades));
 
     // What is there: occlusion as voxels, light as a reflective shadow map a light.
-    const World world = buildWorld(scene, camera, needs, settings, method.reads, log);
+    World ownWorld;
+    World& world = options.kept ? *options.kept : ownWorld;
+    buildWorld(world, options.kept != nullptr, scene, camera, needs, settings, method.reads, log);
 
     // What the eye sees, and its direct light.
     frame.gbuffer = log.run("gbuffer", kSurfacePass, [&] { return renderGBuffer(scene, camera, needs, gbufferSettings(settings, options)); });
@@ -172,7 +129,8 @@ Frame renderFrame(const Scene& scene, const Camera& camera, const Settings& sett
                             .gbuffer = frame.gbuffer,
                             .rsms = world.rsms,
                             .opacity = world.opacity,
-                            .lanes = options.lanes};
+                            .lanes = options.lanes,
+                            .kept = options.kept};
     Gathered light = settings.cones.set.gatherDivisor == 1 || !method.pixelByPixel ? gatherPixels(method, input, frame.gbuffer.height, log)
                                                                                    : gatherBlocks(method, input, log);
     finish(frame, camera, settings, std::move(light), log);
@@ -187,7 +145,8 @@ std::string explainPixel(const Scene& scene, const Camera& camera, const Setting
     if (!method.explain) throw InputError("--pixel", "this method explains no pixel");
     const PassWatch nobody{.hashPasses = false, .progress = {}, .observe = {}};
     PassLog log(nobody);
-    const World world = buildWorld(scene, camera, needs, settings, method.reads, log);
+    World world;
+    buildWorld(world, false, scene, camera, needs, settings, method.reads, log);
     const GBuffer gbuffer = renderGBuffer(scene, camera, needs, gbufferSettings(settings, options));
     return method.explain(
         {.scene = scene, .camera = camera, .needs = needs, .settings = settings, .gbuffer = gbuffer, .rsms = world.rsms, .opacity = world.opacity}, x, y);

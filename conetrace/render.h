@@ -24,7 +24,8 @@ struct RenderOptions {
     int width = 1280, height = 720;
     int lanes = 0;  ///< as GatherInput's
     PassWatch watch;
-    GatherMethod method;  ///< instead of settings.method's, where its `gather` is set: validation gathers by rays
+    World* kept = nullptr;  ///< what an earlier frame of any scene and settings left: what still holds is taken from there, and no bit changes
+    GatherMethod method;    ///< instead of settings.method's, where its `gather` is set: validation gathers by rays
 };
 
 /// Once a frame, so that the passes need only assert: the scene is whole, the settings are in range (InputError); and what the scene requires.

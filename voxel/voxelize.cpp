@@ -8,6 +8,7 @@
 #include "voxel/cascades.h"
 #include "voxel/voxelize_triangle.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <new>
@@ -89,13 +90,13 @@ void forTriangles(const VoxelGrid& grid, std::size_t count, Voxelization mode, N
     });
 }
 
-/// The same for all that a scene shows: visit(mesh, triangle, setup, rows).
-template <class Visit>
-void forTrianglesOf(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const Visit& visit)
+/// The same for all that a scene shows of the meshes that are `chosen(mesh)`: visit(mesh, triangle, setup, rows).
+template <class Chosen, class Visit>
+void forTrianglesOf(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const Chosen& chosen, const Visit& visit)
 {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
-        if (isDrawnNowhere(scene, mesh)) continue;
+        if (!chosen(m) || isDrawnNowhere(scene, mesh)) continue;
         const auto corners = [&](std::size_t i) {
             const auto& t = mesh.triangles[i];
             return std::array<Vec3, 3>{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -103,6 +104,15 @@ void forTrianglesOf(const Scene& scene, const VoxelGrid& grid, Voxelization mode
         forTriangles(grid, mesh.triangles.size(), mode, NoArea::skip, corners,
                      [&](std::size_t i, const TriangleSetup& setup, Span rows) { visit(m, i, setup, rows); });
     }
+}
+
+constexpr auto kAllMeshes = [](std::size_t) { return true; };
+
+template <class Chosen>
+void addVoxels(BitGrid& bits, const Scene& scene, Voxelization mode, const Chosen& chosen)
+{
+    forTrianglesOf(scene, bits.grid, mode, chosen,
+                   [&](std::size_t, std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, mode, bits); });
 }
 
 }  // namespace
@@ -127,13 +137,39 @@ BitGrid voxelize(const Scene& scene, const VoxelGrid& grid, Voxelization mode)
 {
     checkBounds(scene.bounds);
     BitGrid bits = emptyGrid(grid);
-    forTrianglesOf(scene, bits.grid, mode, [&](std::size_t, std::size_t, const TriangleSetup& setup, Span rows) { voxelizeRows(setup, rows, mode, bits); });
+    addVoxels(bits, scene, mode, kAllMeshes);
+    return bits;
+}
+
+BitGrid voxelizeAfter(StandingVoxels& last, const Scene& scene, const std::vector<std::string>& keys, const VoxelGrid& grid, Voxelization mode)
+{
+    assert(keys.size() == scene.meshes.size());
+    checkBounds(scene.bounds);
+    const bool comparable = last.grid == grid && last.meshes.size() == keys.size();
+    std::vector<bool> same(keys.size());
+    for (std::size_t m = 0; m < keys.size(); ++m) same[m] = comparable && last.meshes[m] == keys[m];
+
+    bool holds = comparable && !last.bits.bricks.empty();
+    for (std::size_t m = 0; m < keys.size() && holds; ++m) holds = same[m] || !last.standing[m];
+    if (!holds) {
+        last.standing = same;
+        last.bits = {};
+        if (std::find(same.begin(), same.end(), true) != same.end()) {
+            last.bits = emptyGrid(grid);
+            addVoxels(last.bits, scene, mode, [&](std::size_t m) { return last.standing[m]; });
+        }
+    }
+    last.grid = grid;
+    last.meshes = keys;
+
+    BitGrid bits = last.bits.bricks.empty() ? emptyGrid(grid) : last.bits;
+    addVoxels(bits, scene, mode, [&](std::size_t m) { return !last.standing[m]; });
     return bits;
 }
 
 void forEachFragment(const Scene& scene, const VoxelGrid& grid, Voxelization mode, const std::function<void(const BrickFragments&)>& visit)
 {
-    forTrianglesOf(scene, grid, mode, [&](std::size_t mesh, std::size_t triangle, const TriangleSetup& setup, Span rows) {
+    forTrianglesOf(scene, grid, mode, kAllMeshes, [&](std::size_t mesh, std::size_t triangle, const TriangleSetup& setup, Span rows) {
         forEachBrick(setup, rows, mode, grid.resolution, [&](std::size_t brick, std::uint64_t mask) {
             visit({.mesh = std::uint32_t(mesh), .triangle = std::uint32_t(triangle), .piece = setup.triangle, .brick = brick, .voxels = mask});
         });

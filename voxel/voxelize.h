@@ -6,6 +6,8 @@
 #include "voxel/fixed_triangle.h"
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace lrsm {
 
@@ -22,6 +24,18 @@ std::vector<VoxelGrid> gridsOf(const Scene& scene, const VoxelSettings& settings
 /// nowhere.
 BitGrid voxelize(const Scene& scene, const VoxelSettings& settings);
 BitGrid voxelize(const Scene& scene, const VoxelGrid& grid, Voxelization mode);  ///< in a grid that covers as much as it does
+
+/// What the voxels of one moment leave for the next: those of the meshes that stand.
+struct StandingVoxels {
+    VoxelGrid grid;                   ///< of the last moment
+    std::vector<std::string> meshes;  ///< the last moment's, by key
+    std::vector<bool> standing;       ///< one a mesh: in `bits`
+    BitGrid bits;                     ///< empty while nothing both stands and is passed by something that moves
+};
+
+/// The same bits as `voxelize`: of the meshes that the last moments had too only a copy, the others into it. `keys`: one a mesh, equal only where the mesh is
+/// the same to the bit (keysOf); materials and settings must be those of the last moment.
+BitGrid voxelizeAfter(StandingVoxels& last, const Scene& scene, const std::vector<std::string>& keys, const VoxelGrid& grid, Voxelization mode);
 
 /// Of one triangle: voxels of one brick that it sets, as `voxelize` would.
 struct BrickFragments {

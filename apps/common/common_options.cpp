@@ -109,9 +109,9 @@ SceneSource openChosenScene(const CommonOptions& options)
     return openScene(options.scene, {.animation = options.animation, .view = options.view, .camera = options.camera.empty() ? "0" : options.camera});
 }
 
-Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time)
+Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time, KeptPoses* kept)
 {
-    Scene scene = poseScene(source, time);
+    Scene scene = poseScene(source, time, kept);
     forceReach(scene, options.bounds);
     return scene;
 }

@@ -42,7 +42,7 @@ void addRunOptions(CLI::App& parser, CommonOptions& options);
 Scene loadChosenScene(const CommonOptions& options);
 /// The same in two steps, for many moments: --time is not looked at.
 SceneSource openChosenScene(const CommonOptions& options);
-Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time);
+Scene poseChosenScene(const SceneSource& source, const CommonOptions& options, float time, KeptPoses* kept = nullptr);
 const Camera& chosenCamera(const Scene& scene, const CommonOptions& options);
 /// Preset, then file, then assignments in order; validated.
 Settings chosenSettings(const CommonOptions& options);

@@ -68,7 +68,7 @@ std::string describe(const Camera& camera, const glm::dvec3& origin)
 std::size_t countDecoded(const Scene& scene)
 {
     std::size_t count = 0;
-    for (const Texture& texture : scene.textures) count += !texture.image.empty();
+    for (const SharedTexture& texture : scene.textures) count += !texture->image.empty();
     return count;
 }
 

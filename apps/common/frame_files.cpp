@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 Json passesJson(const Frame& frame)
 {
     Json passes = Json::array();
-    for (const PassReport& pass : frame.passes)
+    for (const PassReport& pass : frame.passes) {
         passes.push_back({{"name", pass.name},
                           {"milliseconds", pass.milliseconds},
                           {"cpu_milliseconds", pass.cpuMilliseconds},
@@ -31,6 +31,8 @@ Json passesJson(const Frame& frame)
                           {"resident", pass.traits.resident},
                           {"non_finite", pass.nonFinite},
                           {"counters", countersJson(pass.counters)}});
+        if (pass.kept) passes.back()["kept"] = true;
+    }
     return passes;
 }
 

@@ -2,6 +2,7 @@
 
 #include "apps/common/describe.h"
 #include "apps/common/interrupts.h"
+#include "apps/common/preview.h"
 #include "apps/common/progress.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -36,7 +37,7 @@ struct Boxes {
 };
 
 /// Of all moments, not of the range at hand alone: so that any split of it gives the same.
-Boxes boxesOfAll(const SceneSource& source, const CommonOptions& options, const FrameRange& range)
+Boxes boxesOfAll(const SceneSource& source, const CommonOptions& options, const FrameRange& range, KeptPoses* kept)
 {
     const double last = std::ceil(endOfMotion(source) * range.fps);
     if (last > kMostFrames) throw InputError("--sequence-bounds union", "the view moves for more than " + std::to_string(kMostFrames) + " frames");
@@ -44,7 +45,7 @@ Boxes boxesOfAll(const SceneSource& source, const CommonOptions& options, const 
     Boxes all;
     for (int i = 0; i <= int(last); ++i) {
         progress.show("bounds of all moments", double(i) / (last + 1.0));
-        const Scene scene = poseChosenScene(source, options, range.time(i));
+        const Scene scene = poseChosenScene(source, options, range.time(i), kept);
         all.bounds.include(scene.bounds);
         all.reach.include(extentOf(scene));
     }
@@ -155,12 +156,13 @@ struct Tally {
     bool interrupted = false;
 };
 
-Tally makeAll(const SequenceJob& job, const CommonOptions& options, const SceneSource& source, const std::optional<Boxes>& boxes, const std::string& sequence)
+Tally makeAll(const SequenceJob& job, const CommonOptions& options, const SceneSource& source, KeptPoses* kept, const std::optional<Boxes>& boxes,
+              const std::string& sequence)
 {
     const CatchInterrupts catching;
     Tally tally;
     for (int i = job.range.begin; i < job.range.end && !tally.interrupted; ++i) {
-        Scene scene = poseChosenScene(source, options, job.range.time(i));
+        Scene scene = poseChosenScene(source, options, job.range.time(i), kept);
         if (boxes) scene.bounds = boxes->bounds, scene.reach = boxes->reach;
         const SequenceFrame frame{.index = i,
                                   .time = job.range.time(i),
@@ -189,14 +191,16 @@ Tally makeAll(const SequenceJob& job, const CommonOptions& options, const SceneS
     return tally;
 }
 
-void sayHint(const SequenceJob& job)
+/// A film of the frames, where they have pictures; how to make one, where no encoder is found.
+void showFilm(const SequenceJob& job)
 {
     std::error_code ignored;
     if (!fs::exists(fs::path(job.folder) / frameName(job.range.begin) / "image.png", ignored)) return;
-    const std::string pictures = job.folder + "/%04d/image.png";
-    std::cout << "to look at it: ffmpeg -framerate " << job.range.fps << " -start_number " << job.range.begin << " -i " << pictures << " -pix_fmt yuv420p "
-              << job.folder << "/preview.mp4, or img2webp -d " << int(1000.0 / job.range.fps + 0.5) << " " << job.folder << "/*/image.png -o " << job.folder
-              << "/preview.webp; one exposure for all: --exposure STOPS\n";
+    const PreviewRange range{job.range.begin, job.range.end, job.range.fps};
+    const std::string film = makePreview(job.folder, range);
+    if (job.quiet || job.json) return;
+    std::cout << (film.empty() ? "to look at it: " + previewHint(job.folder, range) : "to look at it: " + job.folder + "/" + film)
+              << "; one exposure for all: --exposure STOPS\n";
 }
 
 }  // namespace
@@ -211,6 +215,15 @@ void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments)
         ->needs(frames)
         ->check(CLI::IsMember({"frame", "union"}))
         ->capture_default_str();
+    parser
+        .add_option("--sequence-reuse", arguments.reuse,
+                    "on: a frame takes from the one before what stands still, voxels, light maps, meshes; off: makes all of it anew. The bits are the same")
+        ->needs(frames)
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
+    parser
+        .add_flag("--no-preview", arguments.noPreview, "no DIR/preview.mp4 or .webp, which ffmpeg or img2webp else makes of the pictures where it is installed")
+        ->needs(frames);
     parser.add_option("--fps", arguments.fps, "frames a second: frame i is at i / fps seconds")->needs(frames)->capture_default_str();
     frames->excludes("--time");
 }
@@ -218,7 +231,12 @@ void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments)
 std::optional<FrameRange> chosenFrames(const SequenceArguments& arguments)
 {
     if (arguments.frames.empty()) return {};
-    FrameRange range{.begin = 0, .end = 0, .fps = arguments.fps, .unionBounds = arguments.bounds == "union"};
+    FrameRange range{.begin = 0,
+                     .end = 0,
+                     .fps = arguments.fps,
+                     .unionBounds = arguments.bounds == "union",
+                     .reuse = arguments.reuse == "on",
+                     .preview = !arguments.noPreview};
     const char *begin = arguments.frames.data(), *end = begin + arguments.frames.size();
     const auto first = std::from_chars(begin, end, range.begin);
     const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
@@ -243,11 +261,13 @@ int runSequence(const SequenceJob& job, const CommonOptions& options)
     const SceneSource source = openChosenScene(options);
     for (int i = job.range.begin; i < job.range.end; ++i) checkMoment(source, job.range.time(i));
     Json common = commonOf(job, source, options);
-    const std::optional<Boxes> boxes = job.range.unionBounds ? std::optional(boxesOfAll(source, options, job.range)) : std::nullopt;
+    KeptPoses poses;
+    KeptPoses* const kept = job.range.reuse ? &poses : nullptr;
+    const std::optional<Boxes> boxes = job.range.unionBounds ? std::optional(boxesOfAll(source, options, job.range, kept)) : std::nullopt;
     if (boxes) common["bounds"] = boxJson(boxes->bounds), common["reach"] = boxJson(boxes->reach);
     const std::string sequence = Sha256().add(common.dump(-1, ' ', false, Json::error_handler_t::replace)).hex();
 
-    const Tally tally = makeAll(job, options, source, boxes, sequence);
+    const Tally tally = makeAll(job, options, source, kept, boxes, sequence);
     if (fs::is_directory(job.folder)) {
         const Json json = sequenceJson(common, job, sequence);
         writeText(fs::path(job.folder) / kSequenceFile, jsonText(json));
@@ -258,10 +278,8 @@ int runSequence(const SequenceJob& job, const CommonOptions& options)
         std::cerr << "lrsm: interrupted; frames that are done are in " << job.folder << " (the same command continues)" << std::endl;
         return kInterruptedCode;
     }
-    if (!job.quiet && !job.json) {
-        std::cout << job.folder << ": " << tally.made << " frames made, " << tally.kept << " kept, " << kSequenceFile << "\n";
-        sayHint(job);
-    }
+    if (!job.quiet && !job.json) std::cout << job.folder << ": " << tally.made << " frames made, " << tally.kept << " kept, " << kSequenceFile << "\n";
+    if (job.range.preview) showFilm(job);
     return 0;
 }
 

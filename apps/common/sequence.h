@@ -24,7 +24,8 @@ inline constexpr const char* kFrameFile = "moment.json";
 struct SequenceArguments {
     std::string frames;
     double fps = 24.0;
-    std::string bounds = "frame";
+    std::string bounds = "frame", reuse = "on";
+    bool noPreview = false;
 };
 void addSequenceOptions(CLI::App& parser, SequenceArguments& arguments);
 
@@ -33,6 +34,8 @@ struct FrameRange {
     int begin = 0, end = 0;
     double fps = 24.0;
     bool unionBounds = false;  ///< all frames share Scene::bounds and Scene::reach: those of all moments from 0 s to the end of motion
+    bool reuse = true;         ///< a frame takes from the one before what stands; the bits are the same
+    bool preview = true;       ///< a film of the pictures, when all are there
     float time(int frame) const { return float(double(frame) / fps); }  ///< seconds, as --time takes them
 };
 /// Of --frames and --fps; nothing: a still picture. Throws InputError.

@@ -2,6 +2,7 @@
 
 #include "core/report/chart.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace lrsm {
@@ -11,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSequenceStyle = R"(
-.scrub figure { display: inline-block; margin: 0 .6em .6em 0; max-width: 32%; } .scrub img { width: 100%; min-width: 16em; image-rendering: pixelated; display: block; }
+.scrub figure { display: inline-block; margin: 0 .6em .6em 0; width: 31%; vertical-align: top; } .scrub img { width: 100%; image-rendering: pixelated; display: block; }
 .scrub input[type=range] { width: min(48em, 70%); vertical-align: middle; } .scrub output { margin-left: 1em; font-variant-numeric: tabular-nums; }
 .maps { display: flex; flex-wrap: wrap; gap: 1em; } .maps img { max-width: 100%; width: 400px; image-rendering: pixelated; }
 )";
@@ -52,8 +53,9 @@ std::string scrubberHtml(const SequenceSection& section)
     Json shown = Json::array();
     for (const ShownFrame& frame : section.shown) {
         const MomentMetrics& m = section.metrics.moments[placeOf(section, frame.frame)];
-        shown.push_back({{"text", "frame " + std::to_string(frame.frame) + " at " + figureOf(frame.time) + " s: RMSE / mean " + figureOf(m.rmse) + ", F_e " +
-                                      figureOf(m.flickerOfError) + ", jump " + figureOf(m.jump)},
+        const auto known = [](const char* name, double value) { return std::isfinite(value) ? ", " + (name + figureOf(value)) : std::string(); };
+        shown.push_back({{"text", "frame " + std::to_string(frame.frame) + " at " + figureOf(frame.time) + " s: RMSE / mean " + figureOf(m.rmse) +
+                                      known("F_e ", m.flickerOfError) + known("jump ", m.jump)},
                          {"pictures", {pngUri(frame.reference), pngUri(frame.test), pngUri(frame.error)}}});
     }
     const double seconds = section.shown.size() > 1 ? section.shown[1].time - section.shown[0].time : 0.0;

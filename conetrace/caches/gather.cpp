@@ -14,7 +14,8 @@ constexpr PassTraits kPixelsPassOn{.perPixel = true, .resident = false};  ///< g
 CacheAtlas fillByLrsm(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
 {
     const Settings& settings = input.settings;
-    const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, settings.layers, log);
+    std::vector<Lrsm> own;
+    const std::vector<Lrsm>& lrsms = layersOf(input, log, own);
     const ConeSettings cones = slabSettings(settings.cones);
     const NormalCdf phi(cones.gather.gaussian, cones.gather.gaussianTableSize);
     const ConeWorld world{.opacity = input.opacity, .lrsms = lrsms, .settings = cones, .phi = phi};

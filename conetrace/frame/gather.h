@@ -2,10 +2,7 @@
 
 #include "conetrace/frame/gbuffer.h"
 #include "conetrace/frame/memory.h"
-#include "conetrace/frame/pass_log.h"
-#include "core/settings/settings.h"
-#include "lrsm/rsm.h"
-#include "voxel/opacity_pyramid.h"
+#include "conetrace/frame/world.h"
 
 #include <functional>
 
@@ -23,6 +20,7 @@ struct GatherInput {
     const std::vector<Rsm>& rsms;   ///< one a light, in the scene's order
     const OpacityPyramid& opacity;  ///< as far as the method reads it (WorldReads): bits alone, or with mips; else empty
     int lanes = 0;                  ///< pixels that wide kernels take at a time; 0: as many as the machine can. The bits are the same
+    World* kept = nullptr;          ///< where the world outlives the frame: rsms and opacity are its, and what the method keeps beside
 };
 
 /// Indirect light at each pixel's surface; 0 where nothing was drawn.
@@ -61,12 +59,6 @@ inline const Counters& countersOf(const Gathered& gathered)
 {
     return gathered.counters;
 }
-
-/// What of the voxels a method reads; the rest is not built. Layers and caches are its own passes.
-struct WorldReads {
-    bool bits = false;  ///< GatherInput::opacity.base
-    bool mips = false;  ///< the levels above; implies the bits
-};
 
 /// One method, as the frame's switch (conetrace/render.cpp) knows it.
 struct GatherMethod {

@@ -25,6 +25,15 @@ double processorMilliseconds()
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
+void PassLog::repeat(const std::vector<PassReport>& earlier)
+{
+    for (PassReport report : earlier) {
+        report.milliseconds = report.cpuMilliseconds = 0.0;
+        report.kept = true;
+        reports.push_back(std::move(report));
+    }
+}
+
 void PassLog::begin(const std::string& name) const
 {
     if (!watch_.progress) return;

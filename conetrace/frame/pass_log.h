@@ -35,6 +35,7 @@ struct PassReport {
     std::string sha256;            ///< of the output; empty unless asked for
     std::uint64_t nonFinite = 0;   ///< NaNs and infinities in the output; the pass is broken where this is not 0
     Counters counters;
+    bool kept = false;  ///< the output is an earlier frame's, made from the same; all else is said of its making, but the time
 };
 
 /// "rsm 3" is one of the family "rsm".
@@ -100,6 +101,9 @@ class PassLog {
         show(name, output);
         return output;
     }
+
+    /// Reports of passes whose outputs are there already: as they were, in no time.
+    void repeat(const std::vector<PassReport>& earlier);
 
     /// Does anybody want more than the outputs? Then a pass may `show` what it else would not keep.
     bool observed() const { return bool(watch_.observe); }

@@ -218,12 +218,41 @@ void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         });
 }
 
+struct KeptLrsms {
+    std::vector<Lrsm> lrsms;
+    std::vector<Made> made;
+};
+
+std::string passName(std::size_t light)
+{
+    return "lrsm " + std::to_string(light);
+}
+
 }  // namespace
 
 std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& settings, PassLog& log)
 {
     std::vector<Lrsm> lrsms;
-    for (const Rsm& rsm : rsms) lrsms.push_back(log.run("lrsm " + std::to_string(lrsms.size()), kWorldPass, [&] { return buildLrsm(rsm, settings); }));
+    for (std::size_t i = 0; i < rsms.size(); ++i) lrsms.push_back(log.run(passName(i), kWorldPass, [&] { return buildLrsm(rsms[i], settings); }));
+    return lrsms;
+}
+
+const std::vector<Lrsm>& layersOf(const GatherInput& input, PassLog& log, std::vector<Lrsm>& own)
+{
+    const LayerSettings& settings = input.settings.layers;
+    if (!input.kept) return own = buildLrsms(input.rsms, settings, log);
+    auto& [lrsms, made] = ownOf<KeptLrsms>(*input.kept);
+    lrsms.resize(input.rsms.size());
+    made.resize(input.rsms.size());
+    for (std::size_t i = 0; i < lrsms.size(); ++i) {
+        Lrsm& lrsm = lrsms[i];
+        const Rsm& rsm = input.rsms[i];
+        const bool kept = keepOrMake(made[i], input.kept->rsmsMade[i].key, log, [&] {
+            lrsm = {};
+            lrsm = log.run(passName(i), kWorldPass, [&] { return buildLrsm(rsm, settings); });
+        });
+        if (kept) log.show(passName(i), lrsm);
+    }
     return lrsms;
 }
 
@@ -246,7 +275,8 @@ Gathered traceCones(const GBuffer& gbuffer, const Camera& camera, const OpacityP
 
 Gathered gatherLrsm(const GatherInput& input, PassLog& log)
 {
-    const std::vector<Lrsm> lrsms = buildLrsms(input.rsms, input.settings.layers, log);
+    std::vector<Lrsm> own;
+    const std::vector<Lrsm>& lrsms = layersOf(input, log, own);
     const ConeSettings& settings = input.settings.cones;
     ConeRecord kept;
     ConeRecord* const record = log.observed() ? &kept : nullptr;

@@ -9,6 +9,8 @@ namespace lrsm {
 
 /// The pre-filtered layers of every light's map; passes "lrsm 0", "lrsm 1", ...
 std::vector<Lrsm> buildLrsms(const std::vector<Rsm>& rsms, const LayerSettings& settings, PassLog& log);
+/// The same for a frame: in `own`, unless the world outlives the frame: then they are kept with it, each as long as its RSM.
+const std::vector<Lrsm>& layersOf(const GatherInput& input, PassLog& log, std::vector<Lrsm>& own);
 
 /// Final gathering (Sec. 3.2) of all covered pixels, parallel over 16x16 tiles; the same bits for any number of threads.
 /// Irradiance is pi * sum of weight * I over the diffuse cones, opacity their weighted mean, specular the I of the specular cone.

@@ -215,6 +215,34 @@ LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSu
     return {Vec3(sums), sums.w};
 }
 
+float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays)
+{
+    const CellLight& light = cells.lights[cell];
+    const Vec3 toCell = light.centroid - surface.position;
+    const float d2 = std::max(glm::dot(toCell, toCell), kLeastDistance2), distance = std::sqrt(d2);
+    const float cosine = std::max(0.0f, glm::dot(surface.normal, toCell) / distance);
+    const float byArea = light.intensity(-toCell / distance).w * cosine / (d2 + light.litArea / kPi);
+    // A quarter of flux and area are in `mean`.
+    const float meanRadiance = 4.0f * (light.mean.x + light.mean.y + light.mean.z) / light.litArea;
+    const float byLight = (irradiance.x + irradiance.y + irradiance.z) / meanRadiance;
+    return std::max(kLeastChance, 1.0f - fastExp2(-kLog2E * rays * std::max(byArea, byLight) / kPi));
+}
+
+float raysOf(const VisibilityLists& lists, const ListWeights& weights)
+{
+    return blendOf(lists.rays, weights);
+}
+
+Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const LitSurface& surface, const WholeCell& whole, float weight, float share, float rays)
+{
+    switch (world.settings.cellWeight) {
+        case ProxyCellWeight::chance: return whole.irradiance * (weight / chanceOfMeeting(world.cells, cell, surface, whole.irradiance, rays));
+        case ProxyCellWeight::seen: return irradianceOfSeen(world.cells.lights[cell], whole, share);
+        case ProxyCellWeight::one: break;
+    }
+    return whole.irradiance * weight;
+}
+
 ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int y)
 {
     const ProxyCells& cells = world.cells;
@@ -225,11 +253,12 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
     // Eq. 5 and 6.
     ProxyPixel out;
     const bool bySeen = world.settings.cellWeight == ProxyCellWeight::seen;
+    const float rays = raysOf(world.lists, weights);
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
         if (!(cells.lights[cell].litArea > 0.0f) || (bySeen && !(share > 0.0f))) return;
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
         const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
-        out.irradiance += bySeen ? irradianceOfSeen(cells.lights[cell], whole, share) : weight * whole.irradiance;
+        out.irradiance += irradianceOfListed(world, cell, surface, whole, weight, share, rays);
         ++out.cells;
         if (near) out.proxies += 4 * (cells.first[cell + 1] - cells.first[cell]);
     });

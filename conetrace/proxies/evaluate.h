@@ -84,10 +84,22 @@ struct WholeCell {
 WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 
-/// What a cell gives of which a part is seen: V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as what it is, so that
+/// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its
+/// proxies by harmonics, but no less than its light says: irradiance over pi times the mean radiance of those that shine. A cell that is listed over its chance
+/// to be is right in the mean (Horvitz and Thompson 1952), so that small cells, of which rays miss most, lose no light (pp_cell_weight=chance).
+float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
+inline constexpr float kLeastChance = 1e-6f;
+
+/// What a cell gives of which a part is seen (pp_cell_weight=seen): V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as what it is, so that
 /// no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors that f and F have in
 /// common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
 Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float share);
+
+/// Diffuse rays of the lists, blended.
+float raysOf(const VisibilityLists& lists, const ListWeights& weights);
+
+/// What a listed cell gives, by pp_cell_weight. `weight` and `share` as of forListedCells, `rays` as of raysOf.
+Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const LitSurface& surface, const WholeCell& whole, float weight, float share, float rays);
 
 /// Sums over solid angles: radiance by w W, and w W, for the weight w of Eq. 7 and the solid angle W = a cos' / (d^2 + r^2) of a proxy, lit or not, above the
 /// surface's horizon. Their quotient is the mean radiance over the part of the lobe that sees proxies.

@@ -45,8 +45,7 @@ std::string cellsText(const GatherWorld& world, const ListWeights& weights, cons
         }
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
         const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
-        const bool bySeen = world.settings.cellWeight == ProxyCellWeight::seen;
-        const Vec3 light = (bySeen ? irradianceOfSeen(cells.lights[cell], whole, share) : weight * whole.irradiance) / cells.preExposure;
+        const Vec3 light = irradianceOfListed(world, cell, surface, whole, weight, share, raysOf(world.lists, weights)) / cells.preExposure;
         const IVec3 at = cellOf(cells.grid, cell);
         std::size_t lit = 0, unlit = 0;
         for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot)

@@ -6,6 +6,7 @@
 #include "conetrace/vct/inject.h"
 #include "conetrace/vct/march.h"
 #include "conetrace/vct/memory.h"
+#include "core/base/hash.h"
 
 #include <optional>
 
@@ -37,6 +38,26 @@ void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const G
         out.specular.texels[pixel] = gatherSpecular(plan, receiver, lobe.direction, roughness, march, keeper);
         if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
     });
+}
+
+struct KeptRadiance {
+    RadianceVolume volume;
+    Made made;
+};
+
+/// As buildRadiance, in `own`; or kept with the world. Who watches sees each pass's output, and those on the way are not kept.
+const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, RadianceVolume& own)
+{
+    if (!input.kept || log.observed()) return own = buildRadiance(input, log);
+    auto& [volume, made] = ownOf<KeptRadiance>(*input.kept);
+    Sha256 key;
+    key.add(input.kept->geometry);
+    for (const Made& rsm : input.kept->rsmsMade) key.add(rsm.key);
+    keepOrMake(made, key.hex(), log, [&] {
+        volume = {};
+        volume = buildRadiance(input, log);
+    });
+    return volume;
 }
 
 }  // namespace
@@ -87,7 +108,8 @@ Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume, C
 
 Gathered gatherVct(const GatherInput& input, PassLog& log)
 {
-    const RadianceVolume volume = buildRadiance(input, log);
+    RadianceVolume own;
+    const RadianceVolume& volume = radianceOf(input, log, own);
     ConeRecord kept;
     ConeRecord* const record = log.observed() ? &kept : nullptr;
     Gathered gathered = log.run("vct cones", kPicturePass, [&] { return traceRadiance(input, volume, record); });

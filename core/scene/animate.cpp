@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 namespace lrsm::gltf {
 namespace {
@@ -121,6 +122,15 @@ void sampleChannel(const Channel& channel, float time, std::span<double> value)
         for (std::size_t c = 0; c < width; ++c) value[c] = key(s.k0, 1, c) + (key(s.k1, 1, c) - key(s.k0, 1, c)) * s.t;
     }
     if (rotation) normalize(value);
+}
+
+bool Pose::sameAs(const Pose& other) const
+{
+    const auto same = [](const auto& a, const auto& b) {
+        return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+    };
+    return same(worldFromNode, other.worldFromNode) && same(turned, other.turned) &&
+           std::equal(weights.begin(), weights.end(), other.weights.begin(), other.weights.end(), same);
 }
 
 Pose poseNodes(const Asset& asset, int animation, float time, const DVec3& origin, const std::optional<DMat4>& placement)

@@ -19,6 +19,8 @@ struct Pose {
     std::vector<DMat4> worldFromNode;         ///< one a node
     std::vector<glm::dmat3> turned;           ///< one a node: the same without places and sizes, for what has a direction alone; orthonormal
     std::vector<std::vector<float>> weights;  ///< morph weights, one list a node; empty where the node has no targets
+    /// To the bit, so that -0 is not 0.
+    bool sameAs(const Pose& other) const;
 };
 
 /// `animation` is an index, or -1 for the nodes as the file has them. `time` in seconds. `placement`, where there is one, goes over the roots: where a whole

@@ -81,7 +81,7 @@ Vec3 positionAt(const Scene& scene, const Triangle& triangle)
 Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
 {
     Vec4 color = material.baseColor;
-    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
+    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
     if (!triangle.mesh.colors.empty()) color *= triangle.interpolate(triangle.mesh.colors);
     for (int c = 0; c < 4; ++c) color[c] = color[c] > 0.0f ? std::min(color[c], 1.0f) : 0.0f;  // NaN too
     return color;
@@ -130,7 +130,7 @@ Vec3 applyNormalMap(const Scene& scene, const Material& material, const Triangle
     if (tangent.w == 0.0f || t == Vec3(0.0f)) return n;
     const Vec3 b = glm::cross(n, t) * std::copysign(1.0f, tangent.w);
 
-    const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
+    const Vec4 texel = sampleTexture(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
     const Vec3 m = (2.0f * Vec3(texel) - 1.0f) * Vec3(material.normalScale, material.normalScale, 1.0f);
     return normalizedOr(DVec3(t) * double(m.x) + DVec3(b) * double(m.y) + DVec3(n) * double(m.z), n);
 }
@@ -196,7 +196,7 @@ Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& t
 
     float metallic = material.metallic, roughness = material.roughness;
     if (const TextureUse& use = material.metallicRoughnessTexture) {
-        const Vec4 texel = sampleTexture(scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
+        const Vec4 texel = sampleTexture(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
         roughness *= texel.g;
         metallic *= texel.b;
     }

@@ -124,7 +124,7 @@ void decodeTextures(Asset& asset)
         if (!error.empty()) throw InputError(error);
     for (const int texture : textures) {
         const auto found = std::lower_bound(indices.begin(), indices.end(), asset.textureImage[std::size_t(texture)]);
-        asset.textures[std::size_t(texture)].image = images[std::size_t(found - indices.begin())];
+        asset.textures[std::size_t(texture)]->image = images[std::size_t(found - indices.begin())];
     }
     asset.images.clear();
     buildMipChains(asset.textures, asset.materials);
@@ -170,11 +170,23 @@ void checkHasArea(const Scene& scene, const std::string& file)
     throw InputError(file, "no triangle of the scene has an area");
 }
 
+/// From `kept`, where the file stood the same then.
+Scene poseUnlessKept(const Asset& asset, Pose pose, PosedFile* kept)
+{
+    if (!kept) return poseAsset(asset, pose);
+    if (!kept->pose || !kept->pose->sameAs(pose)) {
+        *kept = {};
+        kept->scene = poseAsset(asset, pose);
+        kept->pose = std::make_shared<const Pose>(std::move(pose));
+    }
+    return kept->scene;
+}
+
 /// Posed, with lights and a camera, places relative to `origin`.
-Scene posed(const Asset& asset, const LoadOptions& options, const DVec3& origin)
+Scene posed(const Asset& asset, const LoadOptions& options, const DVec3& origin, PosedFile* kept)
 {
     const int animation = asset.animations.empty() ? -1 : options.animation;
-    Scene scene = poseAsset(asset, poseNodes(asset, animation, options.time, origin));
+    Scene scene = poseUnlessKept(asset, poseNodes(asset, animation, options.time, origin), kept);
     if (scene.triangleCount() == 0) throw InputError(asset.file, "the scene has no triangles");
     scene.origin = origin;
     if (scene.lights.empty()) addDefaultLight(scene);
@@ -272,13 +284,13 @@ GltfFile openGltf(const std::string& path)
     return asset;
 }
 
-Scene poseGltf(const gltf::Asset& asset, const LoadOptions& options)
+Scene poseGltf(const gltf::Asset& asset, const LoadOptions& options, PosedFile* kept)
 {
     gltf::checkOptions(asset, options);
-    Scene scene = gltf::posed(asset, options, glm::dvec3(0.0));
+    Scene scene = gltf::posed(asset, options, glm::dvec3(0.0), kept);
     const glm::dvec3 origin = chooseOrigin(scene, gltf::eyeOf(scene, options));
     if (origin != glm::dvec3(0.0)) {
-        scene = gltf::posed(asset, options, origin);
+        scene = gltf::posed(asset, options, origin, kept);
         gltf::noteLostDigits(asset, options, scene);
     }
     scene.name = gltf::fileName(asset);
@@ -300,11 +312,11 @@ Scene loadGltf(const std::string& path, const LoadOptions& options)
     return poseGltf(*openGltf(path), options);
 }
 
-std::size_t addPlaced(Scene& scene, const gltf::Asset& asset, const Placement& placement, float time)
+std::size_t addPlaced(Scene& scene, const gltf::Asset& asset, const Placement& placement, float time, PosedFile* kept)
 {
     gltf::checkOptions(asset, {.time = time, .animation = placement.animation});
     const int animation = asset.animations.empty() ? -1 : placement.animation;
-    Scene placed = gltf::poseAsset(asset, gltf::poseNodes(asset, animation, time, scene.origin, gltf::worldFromFile(placement)));
+    Scene placed = gltf::poseUnlessKept(asset, gltf::poseNodes(asset, animation, time, scene.origin, gltf::worldFromFile(placement)), kept);
     if (placed.triangleCount() == 0) throw InputError(asset.file, "the scene has no triangles");
     placed.notes = asset.notes;  // without those of its lights
     gltf::noteInvisible(placed);

@@ -23,7 +23,8 @@ struct LoadOptions {
 
 namespace gltf {
 struct Asset;
-}
+struct Pose;
+}  // namespace gltf
 /// A file as it was read, to be posed at any moment: all of it but the pose, textures with their mips.
 using GltfFile = std::shared_ptr<const gltf::Asset>;
 
@@ -31,10 +32,17 @@ using GltfFile = std::shared_ptr<const gltf::Asset>;
 /// triangle's material uses them.
 GltfFile openGltf(const std::string& path);
 
+/// What a file was posed to last, and how it stood: a moment at which it stands the same takes it from here.
+struct PosedFile {
+    std::shared_ptr<const gltf::Pose> pose;
+    Scene scene;
+};
+
 /// The scene at a moment; equal, to the bit, however often and at what other times the file was posed before. Throws InputError where no triangle has an area.
 /// A scene without lights or camera gets default ones (defaults.h). A scene far from 0 gets an origin (Scene::origin): it is subtracted in double, once. The
 /// result does not depend on the number of threads.
-Scene poseGltf(const gltf::Asset& file, const LoadOptions& options);
+/// `kept`, where given, is of this file alone; it changes no bit.
+Scene poseGltf(const gltf::Asset& file, const LoadOptions& options, PosedFile* kept = nullptr);
 
 /// The last keyframe of an animation, seconds; 0 where there is no such one.
 double lengthOfAnimation(const gltf::Asset& file, int animation);
@@ -51,8 +59,9 @@ struct Placement {
 };
 
 /// Adds the file's meshes, materials and textures to `scene`, at `time`, counted from Scene::origin; returns the first of its materials, which end with
-/// Scene::materials. Its lights and cameras stay out, and a note says so. Throws InputError as poseGltf.
-std::size_t addPlaced(Scene& scene, const gltf::Asset& file, const Placement& placement, float time);
+/// Scene::materials. Its lights and cameras stay out, and a note says so. `kept` and InputError as
+/// poseGltf's.
+std::size_t addPlaced(Scene& scene, const gltf::Asset& file, const Placement& placement, float time, PosedFile* kept = nullptr);
 
 /// The camera of that name, else of that index ("0" the first). InputError lists the ones there are.
 const Camera& findCamera(const Scene& scene, const std::string& nameOrIndex);

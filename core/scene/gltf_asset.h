@@ -101,10 +101,10 @@ struct Asset {
     std::vector<Mesh> meshes;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
-    std::vector<Material> materials;     ///< the last one is glTF's default material
-    std::vector<UvSets> materialUvSets;  ///< one a material
-    std::vector<Texture> textures;       ///< images and mips by openGltf; empty until then
-    std::vector<int> textureImage;       ///< index into `images` for each texture, -1: none
+    std::vector<Material> materials;                 ///< the last one is glTF's default material
+    std::vector<UvSets> materialUvSets;              ///< one a material
+    std::vector<std::shared_ptr<Texture>> textures;  ///< images and mips by openGltf; empty until then
+    std::vector<int> textureImage;                   ///< index into `images` for each texture, -1: none
     std::vector<EncodedImage> images;
     std::vector<LocalLight> lights;
     std::vector<Camera> cameras;

@@ -160,7 +160,7 @@ void readMaterials(const Document& document, Asset& asset)
             texture.wrapT = wrapOf(sampler.wrapT);
             texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         }
-        asset.textures.push_back(std::move(texture));
+        asset.textures.push_back(std::make_shared<Texture>(std::move(texture)));
         const Json* webp = extensionIn(document.json["textures"][i], "EXT_texture_webp");
         asset.textureImage.push_back(webp && isRead("EXT_texture_webp") ? (*webp)["source"].get<int>() : source.source);
     }

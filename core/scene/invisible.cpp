@@ -16,7 +16,7 @@ float largestAlpha(const Scene& scene, const Mesh& mesh)
         alpha *= most;
     }
     if (!material.baseColorTexture || std::size_t(material.baseColorTexture.texture) >= scene.textures.size()) return alpha;
-    const Image<Rgba8>& image = scene.textures[std::size_t(material.baseColorTexture.texture)].image;
+    const Image<Rgba8>& image = scene.textures[std::size_t(material.baseColorTexture.texture)]->image;
     if (image.empty()) return alpha;
     std::uint8_t most = 0;
     for (const Rgba8& texel : image.texels) most = std::max(most, texel.a);

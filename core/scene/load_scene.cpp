@@ -89,27 +89,29 @@ float nearPlaneIn(const Scene& scene, const Camera& camera)
     return std::max(nearPlaneFor(camera, measureReach(scene, camera)), float(1.01 / kMaxDepthRatio) * glm::length(far));
 }
 
-void addObjects(Scene& scene, const SceneSource& source, const View& view, float time)
+void addObjects(Scene& scene, const SceneSource& source, const View& view, float time, KeptPoses* kept)
 {
+    if (kept) kept->objects.resize(view.objects.size());
     for (std::size_t i = 0; i < view.objects.size(); ++i) {
-        const std::size_t first = addPlaced(scene, *source.objects[i], view.objects[i].placement, time);
+        const std::size_t first = addPlaced(scene, *source.objects[i], view.objects[i].placement, time, kept ? &kept->objects[i] : nullptr);
         for (std::size_t m = first; m < scene.materials.size(); ++m) changeMaterial(scene.materials[m], view.objects[i].material);
     }
 }
 
-Scene posePlain(const SceneSource& source, float time, const std::optional<Camera>& eye)
+Scene posePlain(const SceneSource& source, float time, const std::optional<Camera>& eye, KeptPoses* kept)
 {
     if (source.builtin) return *source.builtin;
-    return poseGltf(*source.file, {.time = time, .animation = source.options.animation, .camera = source.options.camera, .eye = eye});
+    return poseGltf(*source.file, {.time = time, .animation = source.options.animation, .camera = source.options.camera, .eye = eye},
+                    kept ? &kept->file : nullptr);
 }
 
-Scene poseWithView(const SceneSource& source, float time)
+Scene poseWithView(const SceneSource& source, float time, KeptPoses* kept)
 {
     View view = viewAt(*source.view, double(time));
-    Scene result = posePlain(source, time, view.camera);
+    Scene result = posePlain(source, time, view.camera, kept);
     if (result.origin != glm::dvec3(0.0)) view = viewAt(*source.view, double(time), result.origin);
     changeMaterials(result, view.materials, source.view->path);
-    addObjects(result, source, view, time);
+    addObjects(result, source, view, time, kept);
     if (view.camera) result.cameras = {*view.camera};
     if (view.lights) result.lights = std::move(*view.lights);
     if (view.camera) result.cameras[0].nearPlane = nearPlaneIn(result, result.cameras[0]);
@@ -135,10 +137,10 @@ SceneSource openScene(const std::string& scene, const SceneOptions& options)
     return source;
 }
 
-Scene poseScene(const SceneSource& source, float time)
+Scene poseScene(const SceneSource& source, float time, KeptPoses* kept)
 {
     const FloatState state;
-    Scene posed = source.view ? poseWithView(source, time) : posePlain(source, time, {});
+    Scene posed = source.view ? poseWithView(source, time, kept) : posePlain(source, time, {}, kept);
     posed.reach = measureReach(posed, findCamera(posed, source.options.camera));
     return posed;
 }

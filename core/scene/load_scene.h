@@ -28,8 +28,15 @@ struct SceneSource {
 };
 SceneSource openScene(const std::string& scene, const SceneOptions& options);
 
-/// The scene at `time`, seconds: a function of its arguments alone, equal to the bit to that of a source opened anew.
-Scene poseScene(const SceneSource& source, float time);
+/// What was posed last of one source, file by file.
+struct KeptPoses {
+    PosedFile file;
+    std::vector<PosedFile> objects;
+};
+
+/// The scene at `time`, seconds: a function of source and time alone, equal to the bit to that of a source opened anew. What stands as in `kept` is copied from
+/// there.
+Scene poseScene(const SceneSource& source, float time, KeptPoses* kept = nullptr);
 
 /// The last second at which anything moves, of keys and animations; 0 where nothing does.
 double endOfMotion(const SceneSource& source);

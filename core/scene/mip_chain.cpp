@@ -101,7 +101,7 @@ Image<Rgba8> halveTexture(const Image<Rgba8>& level, TexelMeaning meaning)
     return next;
 }
 
-void buildMipChains(std::vector<Texture>& textures, const std::vector<Material>& materials)
+void buildMipChains(const std::vector<std::shared_ptr<Texture>>& textures, const std::vector<Material>& materials)
 {
     std::vector<std::pair<std::size_t, TexelMeaning>> wanted;
     const auto want = [&](const TextureUse& use, TexelMeaning meaning) {
@@ -115,7 +115,7 @@ void buildMipChains(std::vector<Texture>& textures, const std::vector<Material>&
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     parallelFor(wanted.size(), 1, [&](std::size_t i, std::size_t) {
-        Texture& texture = textures[wanted[i].first];
+        Texture& texture = *textures[wanted[i].first];
         (wanted[i].second == TexelMeaning::color ? texture.colorMips : texture.dataMips) = chainOf(texture.image, wanted[i].second);
     });
 }

@@ -12,6 +12,6 @@ enum class TexelMeaning { color, data };  ///< sRGB, averaged in linear light; o
 Image<Rgba8> halveTexture(const Image<Rgba8>& level, TexelMeaning meaning);
 
 /// Chains of all textures, as the materials use them. Parallel; the same bits everywhere.
-void buildMipChains(std::vector<Texture>& textures, const std::vector<Material>& materials);
+void buildMipChains(const std::vector<std::shared_ptr<Texture>>& textures, const std::vector<Material>& materials);
 
 }  // namespace lrsm

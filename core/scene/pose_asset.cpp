@@ -250,7 +250,7 @@ Scene poseAsset(const Asset& asset, const Pose& pose)
 {
     Scene scene;
     scene.materials = asset.materials;
-    scene.textures = asset.textures;
+    scene.textures.assign(asset.textures.begin(), asset.textures.end());
     scene.notes = asset.notes;
     for (const int n : asset.sceneNodes) {
         const Node& node = asset.nodes[std::size_t(n)];

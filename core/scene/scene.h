@@ -30,6 +30,9 @@ struct Texture {
     std::vector<Image<Rgba8>> colorMips, dataMips;  ///< levels 1 .. 1x1 (mip_chain.h), as colours and as numbers; empty where no material uses it so
 };
 
+/// Never changed once a scene has it: the scenes of one file's moments share it.
+using SharedTexture = std::shared_ptr<const Texture>;
+
 /// A texture as a material uses it: uv' = (uvScaleRotation * uv) + uvOffset (KHR_texture_transform).
 struct TextureUse {
     int texture = -1;  ///< index into Scene::textures, -1: none
@@ -99,7 +102,7 @@ struct Scene {
     std::string name;  ///< file name or built-in name
     std::vector<Mesh> meshes;
     std::vector<Material> materials;
-    std::vector<Texture> textures;
+    std::vector<SharedTexture> textures;  ///< none is null
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     Aabb bounds;                     ///< of all vertices that a triangle uses

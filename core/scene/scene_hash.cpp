@@ -1,6 +1,7 @@
 #include "core/scene/scene_hash.h"
 
 #include "core/base/hash.h"
+#include "core/base/parallel.h"
 
 namespace lrsm {
 namespace {
@@ -42,9 +43,9 @@ Feeder& operator<<(Feeder& out, const Material& m)
     return out << m.baseColorTexture << m.metallicRoughnessTexture << m.normalTexture;
 }
 
-Feeder& operator<<(Feeder& out, const Texture& t)
+Feeder& operator<<(Feeder& out, const SharedTexture& t)
 {
-    return out << int(t.wrapS) << int(t.wrapT) << t.nearest << t.image.width << t.image.height << t.image.texels;
+    return out << int(t->wrapS) << int(t->wrapT) << t->nearest << t->image.width << t->image.height << t->image.texels;
 }
 
 Feeder& operator<<(Feeder& out, const Mesh& m)
@@ -83,6 +84,24 @@ std::string hashScene(const Scene& scene)
     if (scene.origin != glm::dvec3(0.0)) out << scene.origin.x << scene.origin.y << scene.origin.z;
     if (reachIsPart(scene)) out << scene.reach.min << scene.reach.max;
     return out.hex();
+}
+
+SceneKeys keysOf(const Scene& scene)
+{
+    const auto keyOf = [](const auto&... parts) {
+        Feeder out;
+        (out << ... << parts);
+        return out.hex();
+    };
+    SceneKeys keys;
+    keys.meshes.resize(scene.meshes.size());
+    parallelFor(scene.meshes.size(), 1, [&](std::size_t m, std::size_t) { keys.meshes[m] = keyOf(scene.meshes[m]); });
+    for (const Light& light : scene.lights) keys.lights.push_back(keyOf(light));
+    Feeder materials;
+    feedAll(materials, scene.materials);
+    keys.materials = materials.hex();
+    keys.boxes = keyOf(scene.bounds.min, scene.bounds.max, scene.reach.min, scene.reach.max);
+    return keys;
 }
 
 }  // namespace lrsm

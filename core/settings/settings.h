@@ -239,7 +239,7 @@ struct VplSettings {
 
 enum class ProxyHash { position, index };         ///< what Russian roulette draws from: the triangle's place, or its number
 enum class ProxyFilterTest { surface, printed };  ///< whose lists a block takes: those of its own surface, near by; or by depth and normal
-enum class ProxyCellWeight { seen, one };         ///< of a listed cell: the part of it that rays see, or as it is
+enum class ProxyCellWeight { chance, seen, one }; ///< of a listed cell: over the chance that a ray meets it; by the part that rays see; or as it is
 enum class ProxyLobeNorm { visible, lobe };       ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
 
 /// Voxelized point proxies with a visibility filter.
@@ -254,7 +254,7 @@ struct ProxySettings {
     int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
     int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
     ProxyFilterTest filterTest = ProxyFilterTest::surface;
-    ProxyCellWeight cellWeight = ProxyCellWeight::seen;
+    ProxyCellWeight cellWeight = ProxyCellWeight::chance;
     float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
     ProxyLobeNorm lobeNorm = ProxyLobeNorm::visible;
     Storage storage = Storage::gpu;

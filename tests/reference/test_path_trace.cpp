@@ -355,7 +355,7 @@ TEST_CASE("alpha-masked texels let every kind of ray through", "[reference][alph
     texture.image = Image<Rgba8>(2, 1);
     texture.image.at(0, 0).a = 0;  // left half open
     texture.nearest = true;
-    scene.textures = {texture};
+    scene.textures = {std::make_shared<Texture>(texture)};
     scene.materials[0].alphaMask = true;
     scene.materials[0].baseColorTexture.texture = 0;
     scene.meshes[0].uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -172,7 +172,7 @@ Group geometryCases()
     cases.push_back(finite("texture coordinates NaN and huge", "a textured, normal-mapped, masked material with uv of NaN, 1e38, 1e-40", changed([](Scene& s) {
                                Texture texture;
                                texture.image = Image<Rgba8>(2, 2);
-                               s.textures = {texture};
+                               s.textures = {std::make_shared<Texture>(texture)};
                                Material& m = s.materials[0];
                                m.baseColorTexture.texture = m.metallicRoughnessTexture.texture = m.normalTexture.texture = 0;
                                m.alphaMask = true;

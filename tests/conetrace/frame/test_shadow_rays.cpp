@@ -135,7 +135,7 @@ TEST_CASE("shadow rays: an alpha mask lets light through its holes", "[conetrace
     holes.image = Image<Rgba8>(4, 4);
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) holes.image.at(x, y).a = (x + y) % 2 ? 0 : 255;
-    scene.textures = {holes};
+    scene.textures = {std::make_shared<Texture>(holes)};
     scene.materials[1].alphaMask = true;
     scene.materials[1].baseColorTexture.texture = 0;
     updateBounds(scene);

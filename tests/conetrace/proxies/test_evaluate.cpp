@@ -160,6 +160,27 @@ TEST_CASE("proxies: what harmonics say of a cell's radiance is no more than its 
     CHECK(irradianceOfSeen(cells.lights[0], {}, 0.5f) == Vec3(0.0f));
 }
 
+TEST_CASE("proxies: the chance that a ray meets a cell is that of its form factor, and bounds what a cell gives over it", "[proxies]")
+{
+    // A square far away, half of its proxies dark: F = cos cos' A / (pi d^2).
+    const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}});
+    const ProxySettings settings{.count = 1000, .grid = 1};
+    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    ProxyLight light = shining(proxies, Vec3(2.0f));
+    for (std::size_t i = 0; i < proxies.size(); i += 2) light.radiance[i] = Vec3(0.0f);
+    const ProxyCells cells = sortProxies(scene, proxies, light, settings);
+    const LitSurface surface{.position = Vec3(0.5f, 0.5f, 20.0f), .normal = Vec3(0, 0, -1)};
+    const Vec3 irradiance = cellByProxies(cells, 0, surface, {}).irradiance;
+    // By harmonics: 3/4 of it at 0 degrees; half of it shines, so that light alone says half.
+    const double factor = 1.0 / (kPiDouble * 400.0);
+    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 100.0f)) == Approx(1.0 - std::exp(-100.0 * 0.75 * factor)).epsilon(0.01));
+    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 1e6f)) == Approx(1.0));
+    // Many cells, few rays: what is given over its chance is at most pi L / n.
+    const double most = double((irradiance / chanceOfMeeting(cells, 0, surface, irradiance, 4.0f)).x);
+    CHECK(most <= kPiDouble * 2.0 / 4.0 * 1.01);
+    CHECK(most > double(irradiance.x));
+}
+
 TEST_CASE("virtual lights: Eq. 7 and its integral against double precision", "[proxies]")
 {
     const float exponent = GENERATE(0.0f, 1.0f, 10.0f, 50.0f, 400.0f), sigma = GENERATE(0.1f, 0.25f, 1.0f);

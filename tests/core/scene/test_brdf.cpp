@@ -29,7 +29,7 @@ int addTexel(Scene& scene, Rgba8 texel)
 {
     Texture t;
     t.image = Image<Rgba8>(1, 1, texel);
-    scene.textures.push_back(t);
+    scene.textures.push_back(std::make_shared<Texture>(t));
     return int(scene.textures.size()) - 1;
 }
 

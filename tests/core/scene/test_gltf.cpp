@@ -284,7 +284,7 @@ TEST_CASE("materials: blending becomes a mask, the transform of the extension's 
         CHECK(at.x == Approx(0.5f * uv.y).margin(1e-6));
         CHECK(at.y == Approx(1.0f - 0.5f * uv.x).margin(1e-6));
     }
-    const Texture& texture = scene.textures.at(0);
+    const Texture& texture = *scene.textures.at(0);
     CHECK(texture.wrapS == Wrap::clampToEdge);
     CHECK(texture.wrapT == Wrap::mirroredRepeat);
     CHECK(texture.nearest);
@@ -300,7 +300,7 @@ TEST_CASE("an image matters only if a triangle uses it", "[scene][gltf]")
     b.json["textures"] = {{{"source", 0}}};
     b.json["materials"] = nlohmann::json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
     const Scene scene = b.load();
-    CHECK(scene.textures.at(0).image.empty());
+    CHECK(scene.textures.at(0)->image.empty());
     b.primitive()["material"] = 0;
     CHECK(b.error().find("images[0].uri") != std::string::npos);
     b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};

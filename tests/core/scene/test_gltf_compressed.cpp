@@ -91,8 +91,8 @@ TEST_CASE("a WebP texture is read, by its extension and where an image is plainl
     for (const Json& texture : {Json{{"source", 0}}, Json{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}}) {
         b.json["textures"] = Json::array({texture});
         const Scene scene = b.load();
-        REQUIRE(scene.textures[0].image.texels.size() == 2);
-        CHECK(scene.textures[0].image.texels[1] == Rgba8{0, 255, 0, 128});
+        REQUIRE(scene.textures[0]->image.texels.size() == 2);
+        CHECK(scene.textures[0]->image.texels[1] == Rgba8{0, 255, 0, 128});
     }
     webp.resize(webp.size() - 6);
     b.json["images"] = {{{"bufferView", b.addView(webp)}}};

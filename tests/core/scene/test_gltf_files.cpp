@@ -69,7 +69,7 @@ void checkStreams(const Scene& scene)
         const Material& material = scene.materials[std::size_t(mesh.material)];
         for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture}) {
             if (!*use) continue;
-            CHECK_FALSE(scene.textures[std::size_t(use->texture)].image.empty());
+            CHECK_FALSE(scene.textures[std::size_t(use->texture)]->image.empty());
             CHECK_FALSE((use->uvSet == 1 ? mesh.uv1 : mesh.uv0).empty());
         }
     }

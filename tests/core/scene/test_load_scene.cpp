@@ -192,7 +192,7 @@ TEST_CASE("the scene hash sees every field that can change a picture, and no nam
     CHECK(changed([](Scene& s) { s.lights[0].intensity.b *= 0.5f; }));
     CHECK(changed([](Scene& s) { s.lights[0].range = 3.0f; }));
     CHECK(changed([](Scene& s) { s.cameras[0].verticalFov *= 0.5f; }));
-    CHECK(changed([](Scene& s) { s.textures.push_back({}); }));
+    CHECK(changed([](Scene& s) { s.textures.push_back(std::make_shared<Texture>()); }));
 }
 
 TEST_CASE("the default camera sees the whole box, flat or not", "[scene][defaults]")

@@ -48,11 +48,11 @@ Scene texturedFloor(const Image<Rgba8>& image, float repeats)
     scene.meshes.push_back(mesh);
     scene.materials.push_back(diffuseMaterial("floor", Vec3(1)));
     scene.materials[0].baseColorTexture.texture = 0;
-    Texture texture;
-    texture.image = image;
+    const auto texture = std::make_shared<Texture>();
+    texture->image = image;
     scene.textures.push_back(texture);
     updateBounds(scene);
-    buildMipChains(scene.textures, scene.materials);
+    buildMipChains({texture}, scene.materials);
     return scene;
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("mip chains: each texel is the mean of the area it covers, colours in 
 TEST_CASE("mip chains: down to one texel, for the uses that there are, and a constant stays", "[textures]")
 {
     Scene scene = texturedFloor(Image<Rgba8>(20, 6, {200, 17, 90, 128}), 1);
-    const Texture& texture = scene.textures[0];
+    const Texture& texture = *scene.textures[0];
     REQUIRE(texture.colorMips.size() == 4);  // 10x3, 5x1, 2x1, 1x1
     CHECK((texture.colorMips[3].width == 1 && texture.colorMips[3].height == 1));
     CHECK(texture.dataMips.empty());
@@ -111,7 +111,7 @@ TEST_CASE("texture level: D3D's, by the longer movement in texels", "[textures]"
 TEST_CASE("trilinear lookup: between levels, and the base level's own bits where a texture is magnified", "[textures]")
 {
     Scene scene = texturedFloor(noise(16, 16), 1);
-    const Texture& texture = scene.textures[0];
+    const Texture& texture = *scene.textures[0];
     const Vec2 uv(0.3f, 0.71f);
     const auto at = [&](float texels) { return sampleTextureSrgb(texture, {uv, Vec2(texels / 16, 0), Vec2(0)}); };
     CHECK(at(0.5f) == sampleTextureSrgb(texture, uv));
@@ -156,8 +156,8 @@ TEST_CASE("derivatives: those of the neighbouring pixels' rays on the plane", "[
                 const SurfaceHit hit{0, 0, float(b12 - b2), float(b2)};
                 const Vec3 filtered = evaluateSurface(scene, hit, toEye, &here).albedo;
                 const auto at = [&](double level) {
-                    return Vec3(
-                        sampleTextureSrgb(scene.textures[0], {Vec2(float(p.x + 50), float(100 - (50 - p.z))), Vec2(float(std::exp2(level) / 64), 0), Vec2(0)}));
+                    return Vec3(sampleTextureSrgb(*scene.textures[0],
+                                                  {Vec2(float(p.x + 50), float(100 - (50 - p.z))), Vec2(float(std::exp2(level) / 64), 0), Vec2(0)}));
                 };
                 const Vec3 expected = at(std::log2(texels));
                 CAPTURE(perspective, x, y, texels);
