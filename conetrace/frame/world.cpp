@@ -51,8 +51,7 @@ void buildVoxels(World& world, const SceneKeys* keys, const Scene& scene, const 
                 return keys ? voxelizeAfter(world.standing[cascadeOf(finer)], scene, keys->meshes, grid, settings.voxel.mode)
                             : voxelize(scene, grid, settings.voxel.mode);
             });
-            if (mips)
-                opacity = log.run("voxel mips" + cascadeSuffix(finer), kWorldPass, [&] { return buildPyramid(std::move(opacity.base), settings.voxel); });
+            if (mips) opacity = log.run("voxel mips" + cascadeSuffix(finer), kWorldPass, [&] { return buildPyramid(std::move(opacity.base), settings.voxel); });
             if (finer > 0) linkCascade(opacity, std::move(world.opacity));
             world.opacity = std::move(opacity);
         }
@@ -67,7 +66,8 @@ void buildVoxels(World& world, const SceneKeys* keys, const Scene& scene, const 
 
 /// One map a light: those whose keys hold stay.
 template <class Map, class Make>
-void buildMaps(std::vector<Map>& maps, std::vector<Made>& made, const std::vector<std::string>& keys, const std::string& family, PassLog& log, const Make& make)
+void buildMaps(std::vector<Map>& maps, std::vector<MadeFrom>& made, const std::vector<std::string>& keys, const std::string& family, PassLog& log,
+               const Make& make)
 {
     maps.resize(keys.size());
     made.resize(keys.size());
@@ -83,8 +83,8 @@ void buildMaps(std::vector<Map>& maps, std::vector<Made>& made, const std::vecto
 
 }  // namespace
 
-void buildWorld(World& world, bool keeps, const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const WorldReads& reads,
-                PassLog& log)
+void buildWorld(World& world, bool keeps, const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                const WorldReads& reads, PassLog& log)
 {
     std::optional<SceneKeys> keys;
     std::vector<std::string> mapKeys(scene.lights.size());

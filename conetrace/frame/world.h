@@ -24,7 +24,7 @@ struct WorldReads {
 };
 
 /// Of some of the world: what it was made from, and what the passes that made it said.
-struct Made {
+struct MadeFrom {
     std::string key;  ///< equal only where all that the passes read is equal to the bit; empty: nothing that can be told again
     std::vector<PassReport> reports;
 };
@@ -32,7 +32,7 @@ struct Made {
 /// Runs `passes`, which log themselves and leave what they make where it is kept, unless it is there, made from the same: then their reports are repeated, with
 /// no time, and the answer is true. Who is watching must then be shown it by the caller (PassLog::show).
 template <class Passes>
-bool keepOrMake(Made& made, const std::string& key, PassLog& log, Passes&& passes)
+bool keepOrMake(MadeFrom& made, const std::string& key, PassLog& log, Passes&& passes)
 {
     if (!key.empty() && made.key == key) {
         log.repeat(made.reports);
@@ -52,14 +52,14 @@ struct World {
     std::string materials;  ///< SceneKeys's
     std::vector<SharedTexture> textures;
 
-    std::string geometry;  ///< key of meshes, bounds and reach; empty where nothing outlives the frame
+    std::string geometry;                  ///< key of meshes, bounds and reach; empty where nothing outlives the frame
     std::vector<StandingVoxels> standing;  ///< one a cascade
     OpacityPyramid opacity;
-    Made opacityMade;
+    MadeFrom opacityMade;
     std::vector<Rsm> rsms;  ///< one a light, in the scene's order
-    std::vector<Made> rsmsMade;
+    std::vector<MadeFrom> rsmsMade;
     std::vector<DepthMap> shadowMaps;  ///< where shadows are compared with finer depths than the RSMs'
-    std::vector<Made> shadowMapsMade;
+    std::vector<MadeFrom> shadowMapsMade;
     std::any own;  ///< the method's (ownOf)
 
     std::vector<DepthMapView> depths() const
@@ -78,7 +78,7 @@ Own& ownOf(World& world)
 }
 
 /// Fills `world` with what the scene's moment needs, voxels as far as `reads` and the direct light go. With `keeps` what stands from the last moment stays.
-void buildWorld(World& world, bool keeps, const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings, const WorldReads& reads,
-                PassLog& log);
+void buildWorld(World& world, bool keeps, const Scene& scene, const Camera& camera, const Requirements& needs, const Settings& settings,
+                const WorldReads& reads, PassLog& log);
 
 }  // namespace lrsm

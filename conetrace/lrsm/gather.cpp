@@ -220,7 +220,7 @@ void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
 
 struct KeptLrsms {
     std::vector<Lrsm> lrsms;
-    std::vector<Made> made;
+    std::vector<MadeFrom> made;
 };
 
 std::string passName(std::size_t light)

@@ -236,9 +236,9 @@ float raysOf(const VisibilityLists& lists, const ListWeights& weights)
 Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const LitSurface& surface, const WholeCell& whole, float weight, float share, float rays)
 {
     switch (world.settings.cellWeight) {
-        case ProxyCellWeight::chance: return whole.irradiance * (weight / chanceOfMeeting(world.cells, cell, surface, whole.irradiance, rays));
-        case ProxyCellWeight::seen: return irradianceOfSeen(world.cells.lights[cell], whole, share);
-        case ProxyCellWeight::one: break;
+    case ProxyCellWeight::chance: return whole.irradiance * (weight / chanceOfMeeting(world.cells, cell, surface, whole.irradiance, rays));
+    case ProxyCellWeight::seen: return irradianceOfSeen(world.cells.lights[cell], whole, share);
+    case ProxyCellWeight::one: break;
     }
     return whole.irradiance * weight;
 }

@@ -90,9 +90,9 @@ WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const Lit
 float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
 inline constexpr float kLeastChance = 1e-6f;
 
-/// What a cell gives of which a part is seen (pp_cell_weight=seen): V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as what it is, so that
-/// no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors that f and F have in
-/// common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
+/// What a cell gives of which a part is seen (pp_cell_weight=seen): V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as
+/// what it is, so that no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors that
+/// f and F have in common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
 Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float share);
 
 /// Diffuse rays of the lists, blended.

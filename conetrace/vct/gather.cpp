@@ -42,7 +42,7 @@ void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const G
 
 struct KeptRadiance {
     RadianceVolume volume;
-    Made made;
+    MadeFrom made;
 };
 
 /// As buildRadiance, in `own`; or kept with the world. Who watches sees each pass's output, and those on the way are not kept.
@@ -52,7 +52,7 @@ const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, Radianc
     auto& [volume, made] = ownOf<KeptRadiance>(*input.kept);
     Sha256 key;
     key.add(input.kept->geometry);
-    for (const Made& rsm : input.kept->rsmsMade) key.add(rsm.key);
+    for (const MadeFrom& rsm : input.kept->rsmsMade) key.add(rsm.key);
     keepOrMake(made, key.hex(), log, [&] {
         volume = {};
         volume = buildRadiance(input, log);

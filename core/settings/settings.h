@@ -203,8 +203,8 @@ enum class CacheHorizon { renormalise, black };     ///< below a cache's own hor
 enum class CacheLobe { equivalent, cutoff };        ///< solid angle of a specular lobe: of a uniform one as peaked, or where it falls to 1 %
 enum class CacheScoreScale { cluster, metre };      ///< length that the placement's score measures distances in
 
-enum class CacheFill { lrsm, vct, voxels };         ///< what a cache's cones see: layered maps, six-direction voxels, or isotropic ones (its paper)
-enum class CacheShadow { cone, rsm };               ///< `voxels`: of a lit voxel: a cone through the voxels, or the RSM's depth
+enum class CacheFill { lrsm, vct, voxels };  ///< what a cache's cones see: layered maps, six-direction voxels, or isotropic ones (its paper)
+enum class CacheShadow { cone, rsm };        ///< `voxels`: of a lit voxel: a cone through the voxels, or the RSM's depth
 
 /// Clustered pre-convolved radiance caching.
 struct CacheSettings {
@@ -237,10 +237,10 @@ struct VplSettings {
     bool operator==(const VplSettings&) const = default;
 };
 
-enum class ProxyHash { position, index };         ///< what Russian roulette draws from: the triangle's place, or its number
-enum class ProxyFilterTest { surface, printed };  ///< whose lists a block takes: those of its own surface, near by; or by depth and normal
-enum class ProxyCellWeight { chance, seen, one }; ///< of a listed cell: over the chance that a ray meets it; by the part that rays see; or as it is
-enum class ProxyLobeNorm { visible, lobe };       ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
+enum class ProxyHash { position, index };          ///< what Russian roulette draws from: the triangle's place, or its number
+enum class ProxyFilterTest { printed, surface };   ///< whose lists a block takes: by depth and normal; or those of its own surface, near by
+enum class ProxyCellWeight { chance, seen, one };  ///< of a listed cell: over the chance that a ray meets it; by the part that rays see; or as it is
+enum class ProxyLobeNorm { visible, lobe };        ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
 
 /// Voxelized point proxies with a visibility filter.
 struct ProxySettings {
@@ -253,7 +253,7 @@ struct ProxySettings {
     int marchDivisor = 4;   ///< one pixel in a block of so many each way is marched for, 1..16, power of two
     int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
     int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
-    ProxyFilterTest filterTest = ProxyFilterTest::surface;
+    ProxyFilterTest filterTest = ProxyFilterTest::printed;
     ProxyCellWeight cellWeight = ProxyCellWeight::chance;
     float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
     ProxyLobeNorm lobeNorm = ProxyLobeNorm::visible;

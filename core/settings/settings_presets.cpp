@@ -178,7 +178,6 @@ Settings proxiesPaper()
     s.proxies.count = 24000;
     s.proxies.grid = 6;
     s.proxies.marchDivisor = 8;
-    s.proxies.filterTest = ProxyFilterTest::printed;
     s.proxies.cellWeight = ProxyCellWeight::one;
     s.proxies.range = 2.0f;
     return s;

@@ -291,8 +291,8 @@ void addCacheRows(std::vector<SettingRow>& rows)
 {
     rows.push_back(choice<&C::fill>({"rc_fill", "", "what the caches' cones see: the LRSM, the voxels of method vct, or isotropic lit voxels", "[C]: voxels"},
                                     {"lrsm", "vct", "voxels"}));
-    rows.push_back(choice<&C::shadow>({"rc_shadow", "", "rc_fill=voxels: light of a voxel shadowed by a cone through the voxels, or by the RSM", "[C] Sec. 3.1: cone"},
-                                      {"cone", "rsm"}));
+    rows.push_back(choice<&C::shadow>(
+        {"rc_shadow", "", "rc_fill=voxels: light of a voxel shadowed by a cone through the voxels, or by the RSM", "[C] Sec. 3.1: cone"}, {"cone", "rsm"}));
     rows.push_back(
         whole<&C::tile>({"rc_tile", "pixels", "edge of the tiles whose pixels are clustered", "[C]: about 64 for 4096 caches"}, powersOfTwo(1, 256)));
     rows.push_back(whole<&C::resolution>({"rc_resolution", "texels", "edge of a cache: a cone a texel of it", "[C] Sec. 5: 16"}, powersOfTwo(2, 32)));
@@ -345,16 +345,16 @@ void addProxyRows(std::vector<SettingRow>& rows)
     rows.push_back(whole<&P::filterRadius>(
         {"pp_filter_radius", "marched pixels", "m = n of Eq. 4, the visibility filter: 3 for a window of 7x7; 0: none", "[P] Sec. 4: 3"}, {0, 8}));
     rows.push_back(choice<&P::filterTest>({"pp_filter_test", "",
-                                           "whose lists of the window a block takes: those of its own surface, joined to it within the window and near by "
-                                           "what its rays meet; or all of like depth and normal",
+                                           "whose lists of the window a block takes: all of like depth and normal; or those of its own surface, joined to it "
+                                           "within the window and near by what its rays meet",
                                            "ours; [P] Eq. 4: printed"},
-                                          {"surface", "printed"}));
-    rows.push_back(choice<&P::cellWeight>(
-        {"pp_cell_weight", "",
-         "a listed cell counts over the chance that one of the list's rays meets it, so that missed ones lose no light; by the part of it that is seen, the rays "
-         "that met it over those that would were it all seen; or as it is",
-         "ours; [P] Eq. 5: one"},
-        {"chance", "seen", "one"}));
+                                          {"printed", "surface"}));
+    rows.push_back(choice<&P::cellWeight>({"pp_cell_weight", "",
+                                           "a listed cell counts over the chance that one of the list's rays meets it, so that missed ones lose no light; by "
+                                           "the part of it that is seen, the rays "
+                                           "that met it over those that would were it all seen; or as it is",
+                                           "ours; [P] Eq. 5: one"},
+                                          {"chance", "seen", "one"}));
     rows.push_back(real<&P::range>(
         {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
         {0, 1e6f}));

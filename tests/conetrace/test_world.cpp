@@ -18,7 +18,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Settings smallSettings(const std::string& method = "lrsm")
+Settings keptSettings(const std::string& method = "lrsm")
 {
     Settings settings;
     applySetting(settings, "method=" + method);
@@ -99,31 +99,31 @@ void turnLight(Scene& scene)
 TEST_CASE("world: under a camera that moves, voxels and maps stay", "[conetrace][world]")
 {
     const Scene near = changed(box(), [](Scene& s) { s.cameras[0].position += Vec3(0.01f, 0.005f, -0.02f); });
-    CHECK(keptBy({box(), near, box()}, smallSettings()) == std::vector<Names>{kNothing, kAll, kAll});
-    CHECK(keptBy({box(), near}, smallSettings(), true) == std::vector<Names>{kNothing, kAll});
-    CHECK(keptBy({box(), near}, smallSettings("vct")) == std::vector<Names>{kNothing, {"voxelize", "rsm 0", "vct inject", "vct mips"}});
-    CHECK(keptBy({box(), near}, smallSettings("vct"), true) == std::vector<Names>{kNothing, {"voxelize", "rsm 0"}});
-    CHECK(keptBy({box(), near}, smallSettings("caches")) == std::vector<Names>{kNothing, kAll});
+    CHECK(keptBy({box(), near, box()}, keptSettings()) == std::vector<Names>{kNothing, kAll, kAll});
+    CHECK(keptBy({box(), near}, keptSettings(), true) == std::vector<Names>{kNothing, kAll});
+    CHECK(keptBy({box(), near}, keptSettings("vct")) == std::vector<Names>{kNothing, {"voxelize", "rsm 0", "vct inject", "vct mips"}});
+    CHECK(keptBy({box(), near}, keptSettings("vct"), true) == std::vector<Names>{kNothing, {"voxelize", "rsm 0"}});
+    CHECK(keptBy({box(), near}, keptSettings("caches")) == std::vector<Names>{kNothing, kAll});
 }
 
 TEST_CASE("world: under a light that moves the voxels stay, and the maps of the lights that do not", "[conetrace][world]")
 {
     const Scene turned = changed(box(), turnLight);
-    CHECK(keptBy({box(), turned, box()}, smallSettings()) == std::vector<Names>{kNothing, kVoxels, kVoxels});
+    CHECK(keptBy({box(), turned, box()}, keptSettings()) == std::vector<Names>{kNothing, kVoxels, kVoxels});
     const auto lamp = [](Scene& s) { s.lights.push_back(box().lights[0]), s.lights.back().position += Vec3(0.02f, -0.03f, 0.01f); };
     const Scene two = changed(box(), lamp), turnedTwo = changed(turned, lamp);
-    CHECK(keptBy({two, turnedTwo}, smallSettings()) == std::vector<Names>{kNothing, {"voxelize", "voxel mips", "rsm 1", "lrsm 1"}});
+    CHECK(keptBy({two, turnedTwo}, keptSettings()) == std::vector<Names>{kNothing, {"voxelize", "voxel mips", "rsm 1", "lrsm 1"}});
     // Lights come and go; one so bright that all maps are stored darker.
     const Scene bright = changed(two, [](Scene& s) { s.lights[1].intensity *= 1e6f; });
-    CHECK(keptBy({box(), two, bright, two, box()}, smallSettings()) == std::vector<Names>{kNothing, kAll, kVoxels, kVoxels, kAll});
+    CHECK(keptBy({box(), two, bright, two, box()}, keptSettings()) == std::vector<Names>{kNothing, kAll, kVoxels, kVoxels, kAll});
 }
 
 TEST_CASE("world: around an object that moves nothing stays whole, nor where bounds, materials or textures change", "[conetrace][world]")
 {
     const std::vector<Scene> walk = {box(), box({0.03f, 0, 0}), box({0.06f, 0, 0}), box({0.06f, 0, 0}), box({0.03f, 0, 0})};
-    CHECK(keptBy(walk, smallSettings()) == std::vector<Names>{kNothing, kNothing, kNothing, kAll, kNothing});
-    CHECK(keptBy({walk[0], walk[1], walk[2]}, smallSettings("vct")) == std::vector<Names>(3));
-    CHECK(keptBy({box(), box({1, 0, 0}), box({1.5f, 0, 0})}, smallSettings()) == std::vector<Names>(3));
+    CHECK(keptBy(walk, keptSettings()) == std::vector<Names>{kNothing, kNothing, kNothing, kAll, kNothing});
+    CHECK(keptBy({walk[0], walk[1], walk[2]}, keptSettings("vct")) == std::vector<Names>(3));
+    CHECK(keptBy({box(), box({1, 0, 0}), box({1.5f, 0, 0})}, keptSettings()) == std::vector<Names>(3));
     const Scene widerBounds = changed(box(), [](Scene&s) { s.bounds.max.x += 1.0f; }), part = changed(box(), [](Scene&s) {
                                                                                            s.reach = {Vec3(0.1f), Vec3(0.4f)};
                                                                                        });
@@ -137,9 +137,9 @@ TEST_CASE("world: around an object that moves nothing stays whole, nor where bou
             for (Mesh& mesh : s.meshes) mesh.uv0.assign(mesh.positions.size(), Vec2(0.0f));
         });
     };
-    CHECK(keptBy({box(), widerBounds, part}, smallSettings()) == std::vector<Names>(3));
-    CHECK(keptBy({box(), painted}, smallSettings()) == std::vector<Names>(2));
-    CHECK(keptBy({textured(), textured()}, smallSettings()) == std::vector<Names>(2));
+    CHECK(keptBy({box(), widerBounds, part}, keptSettings()) == std::vector<Names>(3));
+    CHECK(keptBy({box(), painted}, keptSettings()) == std::vector<Names>(2));
+    CHECK(keptBy({textured(), textured()}, keptSettings()) == std::vector<Names>(2));
 }
 
 TEST_CASE("world: other settings keep nothing, and a world may be handed from scene to scene", "[conetrace][world]")
@@ -148,14 +148,14 @@ TEST_CASE("world: other settings keep nothing, and a world may be handed from sc
     const auto sameAs = [&](const Scene& scene, const Settings& settings) {
         return renderMoment(scene, settings, &world, false).frame.combined.texels == renderMoment(scene, settings, nullptr, false).frame.combined.texels;
     };
-    Settings finer = smallSettings();
+    Settings finer = keptSettings();
     finer.voxel.resolution = 64;
-    CHECK(sameAs(box(), smallSettings()));
+    CHECK(sameAs(box(), keptSettings()));
     CHECK(sameAs(box(), finer));
     CHECK(sameAs(*makeBuiltinScene("two-rooms"), finer));
-    CHECK(sameAs(box(), smallSettings("vct")));
-    CHECK(sameAs(box(), smallSettings("caches")));
-    CHECK(sameAs(box(), smallSettings()));
+    CHECK(sameAs(box(), keptSettings("vct")));
+    CHECK(sameAs(box(), keptSettings("caches")));
+    CHECK(sameAs(box(), keptSettings()));
 }
 
 TEST_CASE("voxels after others: those of what stands are copied, and the bits are those of voxelize", "[conetrace][world][voxels]")

@@ -47,13 +47,13 @@ Rsm litPlane(const Vec3& toLight, const Vec3& radiance, int resolution = 512)
     });
 }
 
-struct World {
+struct MarchedWorld {
     OpacityPyramid opacity;
     std::vector<Lrsm> lrsms;
     ConeSettings settings;
     NormalCdf phi;
 
-    World(const Rsm& rsm, const LayerSettings& layers, const ConeSettings& cones) : lrsms{buildLrsm(rsm, layers)}, settings(cones)
+    MarchedWorld(const Rsm& rsm, const LayerSettings& layers, const ConeSettings& cones) : lrsms{buildLrsm(rsm, layers)}, settings(cones)
     {
         opacity.base.grid = kFrame;
         opacity.axes = cones.march.estimator == Estimator::slab ? OpacityAxes::directional : OpacityAxes::isotropic;
@@ -111,7 +111,7 @@ TEST_CASE("slab: an infinite wall in thin air gives exactly L, for any step and 
 {
     // Light along the wall's normal: the depth's variance is the tap's own and the w of consecutive segments telescope exactly.
     const Vec3 radiance(2.0f, 0.5f, 8.0f);
-    World world(litPlane(Vec3(0, 0, 1), radiance), oneLayer(), ConeSettings{});
+    MarchedWorld world(litPlane(Vec3(0, 0, 1), radiance), oneLayer(), ConeSettings{});
     for (const float step : {0.25f, 0.5f, 1.0f, 2.0f})
         for (const double cosine : {1.0, 0.7, 0.3})
             for (int i = 0; i < 8; ++i) {
@@ -126,7 +126,7 @@ TEST_CASE("slab: fitted layers lose no more than the tails they skip", "[conetra
 {
     LayerSettings fitted = oneLayer();
     fitted.fitRanges = true;
-    World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), fitted, ConeSettings{});
+    MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), fitted, ConeSettings{});
     for (const float step : {0.25f, 0.5f, 1.0f})
         for (const double cosine : {1.0, 0.5, 0.3}) {
             world.settings.march.step = step;
@@ -142,7 +142,7 @@ TEST_CASE("slab: under slanted light narrow cones still give L in the mean, one 
     // The plane's depth varies within a texel, by how much depends on where between texel centres a ray is: sigma changes from segment to segment.
     const double lightCosine = GENERATE(0.6, 0.25);
     const float step = GENERATE(0.25f, 1.0f);
-    const World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), slabSettings(step));
+    const MarchedWorld world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), slabSettings(step));
     double sum = 0;
     int count = 0;
     for (const double cosine : {1.0, 0.7, 0.3})
@@ -160,7 +160,7 @@ TEST_CASE("slab: a cone that widens keeps L in the mean within a few percent, mo
 {
     // sigma grows with the tap, so neighbouring Phi no longer cancel to the last digit: a few percent too much.
     const double lightCosine = GENERATE(1.0, 0.6, 0.25);
-    World world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), ConeSettings{});
+    MarchedWorld world(litPlane(tilted(lightCosine, 0.3), Vec3(1.0f)), oneLayer(), ConeSettings{});
     for (const float step : {0.25f, 0.5f, 1.0f}) {
         world.settings.march.step = step;
         double sum = 0;
@@ -175,7 +175,7 @@ TEST_CASE("slab: a cone that widens keeps L in the mean within a few percent, mo
 
 TEST_CASE("slab: two lights add, a wall seen from its unlit side emits nothing", "[conetrace][march][slab]")
 {
-    World world(litPlane(Vec3(0, 0, 1), Vec3(2, 0, 0)), oneLayer(), slabSettings(0.5f));
+    MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(2, 0, 0)), oneLayer(), slabSettings(0.5f));
     world.lrsms.push_back(buildLrsm(litPlane(Vec3(0, 0, 1), Vec3(0, 3, 0)), oneLayer()));
     const Vec3 sum = world.march(Mist{}, rayToPlane(tilted(0.8, 1.0), 3.0f), 1e-4f).radiance;
     CHECK(double(sum.x) == Approx(2).epsilon(kTelescopeMaxError));
@@ -189,7 +189,7 @@ TEST_CASE("slab: a wall's own voxels stop the cone, and do not dim its light", "
     // The whole of `balanced`: real voxels, real pyramid, layers in Table 1's formats.
     const Vec3 a(-15, -15, 0), b(15, -15, 0), c(15, 15, 0), d(-15, 15, 0);
     const float step = GENERATE(0.25f, 0.5f);
-    World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), LayerSettings{}, slabSettings(step));
+    MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), LayerSettings{}, slabSettings(step));
     VoxelSettings voxels;
     voxels.resolution = kResolution;
     world.opacity = buildPyramid(voxelizeTriangles({a, b, c, a, c, d}, kFrame, voxels.mode), voxels);
@@ -244,7 +244,7 @@ constexpr double kPaperMaxError = 2e-5;  // float sums of about ten terms, radia
 TEST_CASE("Eq. 1: --pixel tells the march's own story, an empty step samples no light, and without a recorder the same bits come out",
           "[conetrace][march][eq1]")
 {
-    const World world(litPlane(Vec3(0, 0, 1), Vec3(40.0f, 20.0f, 60.0f)), oneLayer(), paperSettings());
+    const MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(40.0f, 20.0f, 60.0f)), oneLayer(), paperSettings());
     const std::vector<float> alphas = {0.1f, 0.0f, 0.4f, 0.25f, 0.9f, 0.05f, 0.5f, 0.3f};
     const ConeRay ray = rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f)));
     Tape tape;
@@ -262,7 +262,7 @@ TEST_CASE("Eq. 1: --pixel tells the march's own story, an empty step samples no 
 
 TEST_CASE("Eq. 1: a uniform medium of opacity a takes 1 - (1 - a)^n of a constant radiance", "[conetrace][march][eq1]")
 {
-    const World world(litPlane(Vec3(0, 0, 1), Vec3(5.0f)), oneLayer(), paperSettings());
+    const MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(5.0f)), oneLayer(), paperSettings());
     const ConeRay ray = rayFrom(Vec3(-6, 1, 3), glm::normalize(Vec3(0.8f, 0.1f, -0.3f)));
     for (const float a : {0.02f, 0.2f, 0.7f, 1.0f})
         for (const int n : {1, 3, 9}) {
@@ -278,7 +278,7 @@ TEST_CASE("Eq. 1: the cut-off ends a cone that has nothing left to gather, and l
 {
     ConeSettings settings = paperSettings();
     settings.march.transmittanceCutoff = 0.01f;
-    const World world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), oneLayer(), settings);
+    const MarchedWorld world(litPlane(Vec3(0, 0, 1), Vec3(1.0f)), oneLayer(), settings);
     NoRecorder recorder;
     ConeCounts counts;
     const ConeResult cone =
