@@ -6,6 +6,7 @@
 #include "catch.h"
 
 #include <unistd.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -81,7 +82,9 @@ TEST_CASE("one at a time visits every setting of the program, around every prese
         const Settings base = preset(name);
         std::vector<std::string> refused;
         const std::vector<NamedSettings> all = oneAtATime(base, &refused);
-        CHECK(refused.empty());
+        // Methods whose cones march through one grid say so.
+        const auto ofOneGrid = [](const std::string& line) { return line.find("voxel_cascades=") != std::string::npos; };
+        CHECK(std::all_of(refused.begin(), refused.end(), ofOneGrid));
         for (const SettingInfo& info : describeSettings()) {
             if (info.shorthand) continue;
             INFO(name << " " << info.key);
@@ -91,7 +94,8 @@ TEST_CASE("one at a time visits every setting of the program, around every prese
                 ++visits;
                 for (const SettingDifference& change : differences(base, named.settings)) differing += change.key == info.key;
             }
-            CHECK(visits >= (info.allowed == info.defaultValue ? 0 : 1));  // a choice of one has no other value
+            const bool only = info.allowed == info.defaultValue || (info.key == "voxel_cascades" && !refused.empty());  // a choice of one has no other value
+            CHECK(visits >= (only ? 0 : 1));
             CHECK(visits <= 14);
             CHECK(differing == visits);
         }

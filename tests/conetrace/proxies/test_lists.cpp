@@ -190,7 +190,7 @@ TEST_CASE("visibility filter: a thin wall parts two floors of one depth and norm
     const Blocks blocks{g.width, g.height, kDivisor};
     const VisibilityLists lists = randomLists(g);
     constexpr int kRadius = 3;
-    const VisibilityLists filtered = filterVisibility(lists, g, cellsAt(kFar), {.filterRadius = kRadius});
+    const VisibilityLists filtered = filterVisibility(lists, g, cellsAt(kFar), {.filterRadius = kRadius, .filterTest = ProxyFilterTest::surface});
     const auto sameSide = [&](int a, int b) { return (blocks.middle(a, g.width) < 25) == (blocks.middle(b, g.width) < 25); };
     std::size_t parted = 0, through = 0;
     for (int row = 0; row < blocks.rows(); ++row)
@@ -220,7 +220,7 @@ TEST_CASE("visibility filter: lists go no farther than .15 of the harmonic mean 
     const float distance = GENERATE(2.0f, 12.0f, 50.0f);
     const ProxyCells cells = cellsAt(position + Vec3(0.0f, 0.0f, distance));
     const std::vector<float> nearness = nearnessOfBlocks(lists, g, cells);
-    const VisibilityLists filtered = filterVisibility(lists, g, cells, {.filterRadius = 4});
+    const VisibilityLists filtered = filterVisibility(lists, g, cells, {.filterRadius = 4, .filterTest = ProxyFilterTest::surface});
     // Twelve rays of 64 met anything.
     CHECK(double(nearness[std::size_t(from)]) == Approx(12.0 / 64.0 / double(distance)).epsilon(1e-4));
     std::uint32_t rays = 0;

@@ -67,7 +67,7 @@ std::string otherValue(const SettingInfo& info, const std::string& current)
         const int least = std::max(2, std::stoi(info.allowed));
         return std::to_string(current == std::to_string(least) ? 2 * least : least);
     }
-    if (contains(info.allowed, "0 .. 3")) return current == "1" ? "2" : "1";
+    if (contains(info.allowed, "0 .. 3") || contains(info.allowed, "1 .. 4")) return current == "1" ? "2" : "1";
     if (contains(info.allowed, " .. ")) return current == "7" ? "5" : "7";
     return current == "0.3" ? "0.4" : "0.3";
 }
