@@ -49,15 +49,15 @@ struct KeptRadiance {
 const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, RadianceVolume& own)
 {
     if (!input.kept || log.observed()) return own = buildRadiance(input, log);
-    auto& [volume, made] = ownOf<KeptRadiance>(*input.kept);
+    KeptRadiance& kept = ownOf<KeptRadiance>(*input.kept);
     Sha256 key;
     key.add(input.kept->geometry);
     for (const MadeFrom& rsm : input.kept->rsmsMade) key.add(rsm.key);
-    keepOrMake(made, key.hex(), log, [&] {
-        volume = {};
-        volume = buildRadiance(input, log);
+    keepOrMake(kept.made, key.hex(), log, [&] {
+        kept.volume = {};
+        kept.volume = buildRadiance(input, log);
     });
-    return volume;
+    return kept.volume;
 }
 
 }  // namespace
