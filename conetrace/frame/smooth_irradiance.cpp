@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kFirstSpacing = 4;  ///< pixels: the width of filterIrradiance
 constexpr int kHorizonSteps[] = {2, 4, 8, 16, 32, 64, 128, 256};
-constexpr float kSurelyBelow = 0.99f;  ///< of a squared sine, far more than rounding
 constexpr int kDirections[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
 float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)[2])
@@ -25,9 +24,7 @@ float nearnessAlong(const GBuffer& gbuffer, int x, int y, const int (&direction)
         const std::size_t neighbour = gbuffer.position.index(nx, ny);
         if (!gbuffer.covered(neighbour)) continue;
         const Vec3 between = gbuffer.position.texels[neighbour] - position;
-        const float squared = glm::dot(between, between), height = glm::dot(between, normal);
-        if (!(height > 0.0f) || height * height < kSurelyBelow * horizon * horizon * squared) continue;  // most: no root, no division
-        const float distance = std::sqrt(squared), sine = height / distance;
+        const float distance = std::sqrt(glm::dot(between, between)), sine = glm::dot(between, normal) / distance;
         if (!(sine > horizon)) continue;
         sum += (sine * sine - horizon * horizon) / distance;
         horizon = sine;
