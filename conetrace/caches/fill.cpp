@@ -53,8 +53,6 @@ CacheAtlas fillOneByOne(const CachePlaces& places, const CacheTables& tables, co
     return atlas;
 }
 
-struct Silent {};
-
 /// Cones are numbered cache by cache, texel by texel; a batch is the next kBatchCones of them.
 class CacheBatch {
   public:
@@ -180,8 +178,8 @@ CacheAtlas fillFromVct(const CachePlaces& places, const CacheTables& tables, con
 {
     const MarchSchedule schedule = texelSchedule(settings, world.cones, world.grid.resolution);
     return fillOneByOne(places, tables, world.grid, world.cones.march, world.volume.preExposure, settings, [&](const ConeRay& ray, ConeCounts& counts) {
-        Silent silent;
-        return marchRadiance(world, ray, schedule, counts, silent);
+        NoRecorder nobody;
+        return marchRadiance(world, ray, schedule, counts, nobody);
     });
 }
 
@@ -191,8 +189,8 @@ CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, 
     const RadianceMarch march{.grid = world.grid, .settings = world.cones.march, .opacity = world.opacity, .preExposure = world.volume.preExposure};
     const IsotropicLookup lookUp(world.volume, world.cones.march.filterFraction);
     return fillOneByOne(places, tables, world.grid, world.cones.march, world.volume.preExposure, settings, [&](const ConeRay& ray, ConeCounts& counts) {
-        Silent silent;
-        return marchRadiance(march, lookUp, ray, schedule, counts, silent);
+        NoRecorder nobody;
+        return marchRadiance(march, lookUp, ray, schedule, counts, nobody);
     });
 }
 

@@ -25,7 +25,8 @@ CacheAtlas fillByLrsm(const GatherInput& input, const CachePlaces& places, const
 CacheAtlas fillByVct(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)
 {
     const Settings& settings = input.settings;
-    const RadianceVolume volume = buildRadiance(input, log);
+    RadianceVolume own;
+    const RadianceVolume& volume = radianceOf(input, log, own);
     const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = settings.cones, .vct = settings.vct};
     return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVct(places, tables, world, settings.caches); });
 }

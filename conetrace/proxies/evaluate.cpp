@@ -142,11 +142,11 @@ ListWeights listWeights(const GBuffer& gbuffer, int divisor, int x, int y)
     return found;
 }
 
-WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, std::uint32_t end, const LitSurface& surface, const VplSettings& vpl)
 {
     const VplNear near = vplNear(vpl, cells.area);
     Float4 red{}, green{}, blue{}, all{};
-    for (std::uint32_t q = cells.first[cell]; q < cells.first[cell + 1]; ++q) {
+    for (std::uint32_t q = cells.first[cell]; q < end; ++q) {
         const ProxyQuad& quad = cells.quads[q];
         const QuadView view(quad, surface);
         const Float4 geometry = atMost(view.receiver * view.light / (view.distance2 * (view.distance2 + near.softening)), near.most);
@@ -257,10 +257,11 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
         if (!(cells.lights[cell].litArea > 0.0f) || (bySeen && !(share > 0.0f))) return;
         const bool near = isNear(cells, cell, surface.position, world.settings.range);
-        const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
+        const std::uint32_t end = bySeen ? cells.first[cell + 1] : cells.litEnd[cell];
+        const WholeCell whole = near ? cellByProxies(cells, cell, end, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
         out.irradiance += irradianceOfListed(world, cell, surface, whole, weight, share, rays);
         ++out.cells;
-        if (near) out.proxies += 4 * (cells.first[cell + 1] - cells.first[cell]);
+        if (near) out.proxies += 4 * (end - cells.first[cell]);
     });
     out.irradiance /= cells.preExposure;
     out.opacity = blendOf(world.lists.opacity, weights);

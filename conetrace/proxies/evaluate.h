@@ -80,8 +80,12 @@ struct WholeCell {
     Vec3 irradiance{0.0f};    ///< f(v) of Eq. 6, W/m^2 times the pre-exposure
     float formFactor = 0.0f;  ///< F: the part of a cosine-weighted hemisphere's rays that its proxies, lit or not, would stop
 };
-/// By its proxies, or by its spherical harmonics.
-WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
+/// By its proxies up to `end`, a quad: all of the cell's, or, where F is not asked for, litEnd alone; or by its spherical harmonics.
+WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, std::uint32_t end, const LitSurface& surface, const VplSettings& vpl);
+inline WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+{
+    return cellByProxies(cells, cell, cells.first[cell + 1], surface, vpl);
+}
 WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
 
 /// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its

@@ -22,12 +22,10 @@ inline bool lendsVisibility(const GBuffer& g, std::size_t pixel, std::size_t nei
 }
 
 /// With pp_filter_test=surface a block takes the list of another only if
-/// - both are of one surface (frame/same_surface.h), which goes on from block to block along one of the window's shortest ways between them, all pixels
-/// between:
-///   depth and normal are alike on both sides of a thin wall too;
-/// - it is next to it, or nearer than this part of the harmonic mean distance R of what either's rays met, over which light changes little (Ward, Rubinstein
-/// and
-///   Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988).
+/// - both are of one surface (frame/same_surface.h), which goes on from block to block along one of the window's shortest ways between them, through all
+///   pixels: depth and normal are alike on both sides of a thin wall too;
+/// - it is next to it, or nearer than this part of the harmonic mean distance R of what either's rays met, over which light changes little (Ward,
+///   Rubinstein and Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988).
 inline constexpr float kFilterReach = 0.15f;
 
 /// 1/R of each block, 1/m: the mean over its diffuse rays of 1 / distance, to the centroid of the cell that a ray met, no nearer than a proxy's radius.

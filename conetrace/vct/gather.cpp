@@ -45,7 +45,8 @@ struct KeptRadiance {
     MadeFrom made;
 };
 
-/// As buildRadiance, in `own`; or kept with the world. Who watches sees each pass's output, and those on the way are not kept.
+}  // namespace
+
 const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, RadianceVolume& own)
 {
     if (!input.kept || log.observed()) return own = buildRadiance(input, log);
@@ -59,8 +60,6 @@ const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, Radianc
     });
     return kept.volume;
 }
-
-}  // namespace
 
 VoxelSurface buildSurface(const GatherInput& input, PassLog& log)
 {

@@ -22,6 +22,9 @@ VoxelSurface buildSurface(const GatherInput& input, PassLog& log);
 
 /// The passes "vct surface" (where the injection reads one), "vct inject" and "vct mips".
 RadianceVolume buildRadiance(const GatherInput& input, PassLog& log);
+/// The same for a frame: in `own`, unless the world outlives the frame: then it is kept with it. Who watches sees each pass's output, and those on the way are
+/// not kept.
+const RadianceVolume& radianceOf(const GatherInput& input, PassLog& log, RadianceVolume& own);
 
 /// Cones and schedules of VCT: one sample a step, whatever the estimator of other methods.
 GatherPlan planVct(const ConeSettings& settings, const Requirements& needs, int gridResolution);

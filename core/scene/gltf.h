@@ -59,8 +59,8 @@ struct Placement {
 };
 
 /// Adds the file's meshes, materials and textures to `scene`, at `time`, counted from Scene::origin; returns the first of its materials, which end with
-/// Scene::materials. Its lights and cameras stay out, and a note says so. `kept` and InputError as
-/// poseGltf's.
+/// Scene::materials. Its lights and cameras stay out, and a note says so. `kept` and InputError
+/// as poseGltf's.
 std::size_t addPlaced(Scene& scene, const gltf::Asset& file, const Placement& placement, float time, PosedFile* kept = nullptr);
 
 /// The camera of that name, else of that index ("0" the first). InputError lists the ones there are.

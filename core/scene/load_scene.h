@@ -34,8 +34,8 @@ struct KeptPoses {
     std::vector<PosedFile> objects;
 };
 
-/// The scene at `time`, seconds: a function of source and time alone, equal to the bit to that of a source opened anew. What stands as in `kept` is copied from
-/// there.
+/// The scene at `time`, seconds: a function of source and time alone, equal to the bit to that of a source opened anew. What stands as in
+/// `kept` is copied from there.
 Scene poseScene(const SceneSource& source, float time, KeptPoses* kept = nullptr);
 
 /// The last second at which anything moves, of keys and animations; 0 where nothing does.

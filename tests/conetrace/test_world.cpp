@@ -106,6 +106,21 @@ TEST_CASE("world: under a camera that moves, voxels and maps stay", "[conetrace]
     CHECK(keptBy({box(), near}, keptSettings("caches")) == std::vector<Names>{kNothing, kAll});
 }
 
+TEST_CASE("world: voxel grids about the eye stay while it moves within their step, and are made anew where they jump", "[conetrace][world]")
+{
+    Settings settings = keptSettings();
+    settings.voxel.resolution = kLeastCascadeResolution;
+    settings.voxel.cascades = 2;
+    const auto from = [](float along) { return changed(box(), [&](Scene& s) { s.cameras[0].position += Vec3(0.0f, 0.0f, along); }); };
+    const float step = 8.0f * gridOf(box(), settings.voxel).voxelSize;
+    const Names grids{"voxelize", "voxel mips", "voxelize 1", "voxel mips 1"}, maps{"rsm 0", "lrsm 0"};
+    Names all = grids;
+    all.insert(all.end(), maps.begin(), maps.end());
+    // In the middle of the box: else the wider grid's border holds the finer one.
+    const float inside = gridOf(box(), settings.voxel).origin.z + 32.0f * gridOf(box(), settings.voxel).voxelSize - box().cameras[0].position.z;
+    CHECK(keptBy({from(inside), from(inside), from(inside - step), from(inside - step)}, settings) == std::vector<Names>{kNothing, all, maps, all});
+}
+
 TEST_CASE("world: under a light that moves the voxels stay, and the maps of the lights that do not", "[conetrace][world]")
 {
     const Scene turned = changed(box(), turnLight);
