@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lrsm {
 namespace {
 
 /// Vertices count within so many reaches: the far ends of what is seen.
 constexpr double kVertexReaches = 2.0;
+constexpr double kNegligibleLight = 1.0 / 256.0;
 
 /// What is met from a viewpoint, and the distance from `centre` within which lies kReachShare of it: nearest first, distances from there.
 struct Met {
@@ -57,9 +59,8 @@ Met metFrom(const Scene& scene, const Viewpoint& from, bool light)
 }
 
 /// Adds what is reached from one viewpoint: the vertices about it, and what its rays meet within `struckReaches` reaches.
-void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, double struckReaches)
+void include(Aabb& box, const Scene& scene, const Met& met, double struckReaches)
 {
-    const Met met = metFrom(scene, from, light);
     if (met.hits.empty()) return;
     for (const CoarseHit& hit : met.hits)
         if (hit.distance <= struckReaches * met.reach) box.include(hit.position);
@@ -70,6 +71,50 @@ void include(Aabb& box, const Scene& scene, const Viewpoint& from, bool light, d
                 const glm::dvec3 d = glm::dvec3(mesh.positions[v]) - glm::dvec3(met.centre);
                 if (glm::dot(d, d) <= radius * radius) box.include(mesh.positions[v]);
             }
+}
+
+double most(const Vec3& channels)
+{
+    return double(std::max({channels.x, channels.y, channels.z}));
+}
+
+/// A local light and what it meets.
+struct LocalLight {
+    const Light& light;
+    Met met;
+    Vec3 middle;  ///< of what it strikes
+    double flux;  ///< W onto it, per channel at most
+};
+LocalLight localLight(const Scene& scene, const Light& light)
+{
+    Met met = metFrom(scene, viewpointOf(light), true);
+    const double solidAngle = light.type == LightType::spot ? 2.0 * double(kPi) * (1.0 - std::cos(double(light.outerConeAngle))) : 4.0 * double(kPi) / 6.0;
+    const double flux = met.hits.empty() ? 0.0 : solidAngle * most(light.intensity);
+    const Vec3 middle = middleOf(met.hits);
+    return {light, std::move(met), middle, flux};
+}
+
+/// The irradiance that it brings to a place at most, with nothing between, straight and from what it strikes.
+double mostIrradiance(const LocalLight& local, const Vec3& p)
+{
+    const glm::dvec3 d = glm::dvec3(p) - glm::dvec3(local.middle);
+    const double distance2 = std::max(glm::dot(d, d), local.met.reach * local.met.reach);
+    return most(sampleLight(local.light, p).irradiance) + (local.flux > 0.0 ? local.flux / (double(kPi) * distance2) : 0.0);
+}
+
+/// Which of them matter to what the camera sees within its reach: the others together bring to no place of it more than kNegligibleLight of its light.
+std::vector<bool> whichMatter(const std::vector<LocalLight>& lights, double sun, const Met& seen)
+{
+    std::vector<bool> matters(lights.size(), false);
+    std::vector<double> brought(lights.size());
+    for (const CoarseHit& hit : seen.hits) {
+        if (hit.distance > seen.reach) break;
+        double all = sun;
+        for (std::size_t i = 0; i < lights.size(); ++i) all += brought[i] = mostIrradiance(lights[i], hit.position);
+        for (std::size_t i = 0; i < lights.size(); ++i)
+            if (brought[i] * double(lights.size()) > kNegligibleLight * all) matters[i] = true;
+    }
+    return matters;
 }
 
 /// Grown until no vertex is left within its own length: what stands together is not cut apart.
@@ -129,19 +174,25 @@ std::optional<double> reachOf(const Scene& scene, const Camera& camera)
 Aabb measureReach(const Scene& scene, const Camera& camera)
 {
     if (scene.bounds.empty()) return scene.bounds;
-    const bool sun = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.type == LightType::directional && shines(l); });
+    double sun = 0.0;
+    for (const Light& light : scene.lights)
+        if (light.type == LightType::directional) sun += most(light.intensity);
 
     Aabb box;
     const auto gains = [&] { return box.empty() || kReachGain * box.longestSide() <= scene.bounds.longestSide(); };
-    include(box, scene, viewpointOf(camera), false, sun ? kVertexReaches : 0.0);  // a sun lights all of what is seen, and what reflects it is there
-    for (const Light& light : scene.lights) {
-        if (!gains()) return scene.bounds;  // the ordinary case, before any light is looked at
-        if (light.type != LightType::directional && shines(light)) include(box, scene, viewpointOf(light), true, 1.0);
-    }
+    const Met seen = metFrom(scene, viewpointOf(camera), false);
+    include(box, scene, seen, sun > 0.0 ? kVertexReaches : 0.0);  // a sun lights all of what is seen, and what reflects it is there
+    if (!gains()) return scene.bounds;                            // the ordinary case, before any light is looked at
+    std::vector<LocalLight> lights;
+    for (const Light& light : scene.lights)
+        if (light.type != LightType::directional && shines(light)) lights.push_back(localLight(scene, light));
+    const std::vector<bool> matters = whichMatter(lights, sun, seen);
+    for (std::size_t i = 0; i < lights.size() && gains(); ++i)
+        if (matters[i]) include(box, scene, lights[i].met, 1.0);
     if (!gains() || box.empty() || !(box.longestSide() > 0.0f)) return scene.bounds;
     const Aabb whole = withNeighbours(box, scene);
     const Aabb& reached = kReachGain * whole.longestSide() <= scene.bounds.longestSide() ? whole : box;
-    return sun ? withSunlitGround(reached, scene) : reached;
+    return sun > 0.0 ? withSunlitGround(reached, scene) : reached;
 }
 
 glm::dvec3 chooseOrigin(const Scene& scene, const Camera& camera)

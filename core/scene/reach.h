@@ -16,7 +16,8 @@ inline constexpr double kReachShare = 0.9;
 
 /// The box to which voxel grid and light maps are fitted. Scene::bounds unless these are more than kReachGain times as long; then the bounds of the vertices
 /// within twice the reach of the camera or of a local light, and of what local lights strike within theirs (with a sun, of what the camera sees within twice
-/// its own), grown to what stands within its own length as far as that leaves it a part, and with a sun to all surfaces
+/// its own). Lights so far away or faint that they bring to nothing that the camera sees within its reach more than 1/256 of its light, straight or from what
+/// they strike, do not widen it. It is grown to what stands within its own length as far as that leaves it a part, and with a sun to all surfaces
 /// within its own length, which reflect to what is seen. A ground, a sky or a stray triangle thus costs next to nothing: it
 /// lies in the grid where it passes through.
 Aabb measureReach(const Scene& scene, const Camera& camera);

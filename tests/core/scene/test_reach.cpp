@@ -4,6 +4,7 @@
 #include "core/scene/coarse_view.h"
 #include "core/scene/exposure.h"
 #include "core/scene/invisible.h"
+#include "core/scene/light.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/shapes.h"
 #include "core/scene/view_file.h"
@@ -162,6 +163,27 @@ TEST_CASE("reach: ground, sky and stray triangles far away add nothing, in any u
         const Aabb onGround = reachAfter(ground);
         CHECK(onGround.extent().x < 3.0f * largest);  // a spot beside a wall also strikes the ground
     }
+}
+
+TEST_CASE("reach: a lamp far away widens it only where its light matters to what is seen", "[scene][reach]")
+{
+    const float away = GENERATE(1e3f, 1e4f), height = GENERATE(2.0f, 20.0f);
+    const bool point = GENERATE(false, true);
+    Scene scene = *makeBuiltinScene("cornell-box");
+    addGround(scene, scene.bounds.min.y - 0.01f, 2e4f);
+    const Aabb own = reachAfter(scene);
+    CHECK(own.longestSide() < 10.0f);
+    const Vec3 lamp(away, height, 0.0f), home = scene.lights.at(0).intensity;
+    const auto reachWith = [&](float times) {
+        Scene lit = scene;
+        const std::vector<Light> lamps = point ? splitPointLight(lamp, times * home, kInfinity, "lamp")
+                                               : std::vector<Light>{spotLight(lamp, Vec3(away, 0, 0), times * home, 0.5f, 0.7f)};
+        lit.lights.insert(lit.lights.end(), lamps.begin(), lamps.end());
+        return reachAfter(lit);
+    };
+    CHECK(reachWith(1.0f) == own);
+    // A spot that looks down reaches the room by what it strikes alone: its flux over pi d^2, against the room's own I / d^2 at some metres.
+    CHECK(reachWith(away * away) == scene.bounds);
 }
 
 TEST_CASE("reach: an orthographic camera has that of what it meets, wherever it stands", "[scene][reach]")
