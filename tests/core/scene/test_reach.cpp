@@ -183,7 +183,7 @@ TEST_CASE("reach: a lamp far away widens it only where its light matters to what
     };
     CHECK(reachWith(1.0f) == own);
     // A spot that looks down reaches the room by what it strikes alone: its flux over pi d^2, against the room's own I / d^2 at some metres.
-    CHECK(reachWith(away * away) == scene.bounds);
+    CHECK(reachWith(away * away).longestSide() > away);
 }
 
 TEST_CASE("reach: an orthographic camera has that of what it meets, wherever it stands", "[scene][reach]")
