@@ -139,6 +139,11 @@ void keepLists(const PassOutput& output, std::size_t, Capture& capture)
     toBuffers(*lists, name, capture.buffers);
 }
 
+void keepWeighed(const PassOutput& output, std::size_t, Capture& capture)
+{
+    if (const auto* seen = output.as<WeighedProxies>()) toBuffers(*seen, capture.buffers);
+}
+
 void keepListed(const PassOutput& output, std::size_t, Capture& capture)
 {
     if (const auto* gathered = output.as<Gathered>()) cachedLightToBuffers(*gathered, capture.buffers);
@@ -172,6 +177,10 @@ bool placesProxies(const Settings& settings)
 bool filtersLists(const Settings& settings)
 {
     return ofProxies(settings) && settings.proxies.filterRadius > 0;
+}
+bool weighsProxies(const Settings& settings)
+{
+    return ofProxies(settings) && settings.proxies.cellWeight == ProxyCellWeight::seen;
 }
 bool fillsCaches(const Settings& settings, CacheFill from)
 {
@@ -298,7 +307,9 @@ const std::vector<PassRow> kRows = {
      .describe = describeMarched, .record = keepLists<kMarched>, .rerun = rerunProxyMarch},
     {.family = "pp filter", .stages = {"proxies"}, .exists = filtersLists, .reads = {"scene", "gbuffer", "pp cells", "pp march"},
      .describe = describeFiltered, .record = keepLists<kFilteredLists>, .rerun = rerunProxyFilter},
-    {.family = "pp gather", .stages = {"proxies", "vpl"}, .exists = ofProxies, .reads = {"scene", "gbuffer", "pp cells", "pp march", "pp filter"},
+    {.family = "pp weigh", .stages = {"proxies"}, .exists = weighsProxies, .reads = {"scene", "pp cells", "pp march"},
+     .describe = describeWeighed, .record = keepWeighed, .rerun = rerunWeighProxies},
+    {.family = "pp gather", .stages = {"proxies", "vpl"}, .exists = ofProxies, .reads = {"scene", "gbuffer", "pp cells", "pp march", "pp filter", "pp weigh"},
      .describe = describeListed, .record = keepListed, .rerun = rerunProxyGather},
     {.family = "ism lights", .stages = {"ism"}, .exists = ofIsm, .reads = {"rsm"},
      .describe = describeVirtualLights, .record = keepShaped<VirtualLights>, .rerun = rerunIsmLights},

@@ -18,6 +18,11 @@ Blocks marchedBlocks(int width, int height, const ProxySettings& settings)
     return {width, height, settings.marchDivisor};
 }
 
+std::size_t mostQuads(const ProxySettings& settings)
+{
+    return std::size_t(settings.count) / kLanes + 1;
+}
+
 void addLists(Catalogue& out, const DescribedFrame& frame, const std::string& name, const std::string& which)
 {
     const Blocks blocks = marchedBlocks(frame.width, frame.height, frame.settings.proxies);
@@ -94,7 +99,7 @@ void describeProxyLight(Catalogue& out, const DescribedFrame& frame, std::size_t
 void describeProxyCells(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     const std::size_t cells = makeCellGrid(extentOf(frame.scene), frame.settings.proxies.grid).count();
-    const auto quads = std::size_t(frame.settings.proxies.count) / kLanes + 1;
+    const std::size_t quads = mostQuads(frame.settings.proxies);
     out.add("pp.first", Dtype::u4, {cells + 1}, {"cell"}, {}, {"quads of cell h are quads[first[h]] .. quads[first[h + 1] - 1]", "", ""}, tolerances::kLists);
     out.add("pp.lit_end", Dtype::u4, {cells}, {"cell"}, {}, {"those before lit_end[h] shine", "", ""}, tolerances::kLists);
     out.add("pp.quads", Dtype::f4, {quads, kQuadRows, kLanes}, {"quad", "row", "lane"}, {},
@@ -112,11 +117,21 @@ void describeProxyCells(Catalogue& out, const DescribedFrame& frame, std::size_t
 void describeMarched(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     addLists(out, frame, kMarched, "a ray of the block's pixel met");
+    if (frame.settings.proxies.cellWeight == ProxyCellWeight::seen)
+        out.add(kProxyHits, Dtype::u4, {mostQuads(frame.settings.proxies), kLanes}, {"quad", "lane"}, {},
+                {"rays of all blocks that met the proxy, the nearest of its cell", "", ""}, tolerances::kLists);
 }
 
 void describeFiltered(Catalogue& out, const DescribedFrame& frame, std::size_t)
 {
     addLists(out, frame, kFilteredLists, "is in a list of the window (Eq. 4)");
+}
+
+void describeWeighed(Catalogue& out, const DescribedFrame& frame, std::size_t)
+{
+    const std::size_t cells = makeCellGrid(extentOf(frame.scene), frame.settings.proxies.grid).count();
+    out.add(kSeenLight, Dtype::f4, {cells, kLightFloats}, {"cell", "number"}, {}, {"as pp.cell_light, each proxy as often as rays met it", "", ""},
+            tolerances::kCellSums);
 }
 
 void describeListed(Catalogue& out, const DescribedFrame& frame, std::size_t)
@@ -166,6 +181,7 @@ void shapeBuffers(const VisibilityLists& lists, const std::string& name, std::ve
 {
     shape(buffers, name + "_cells", {lists.cells.size()});
     shape(buffers, name + "_hits", {lists.hits.size()});
+    shape(buffers, name + "_proxy_hits", {lists.proxyHits.size() / kLanes});
 }
 
 void shapeBuffers(const VirtualLights& lights, std::vector<Buffer>& buffers)
@@ -212,6 +228,12 @@ void toBuffers(const VisibilityLists& lists, const std::string& name, std::vecto
     fit(buffers, name + "_opacity", lists.opacity);
     fit(buffers, name + "_lobe_opacity", lists.lobeOpacity);
     fit(buffers, name + "_rays", lists.rays);
+    fit(buffers, name + "_proxy_hits", lists.proxyHits);
+}
+
+void toBuffers(const WeighedProxies& seen, std::vector<Buffer>& buffers)
+{
+    fit(buffers, kSeenLight, seen.lights);
 }
 
 void toBuffers(const VirtualLights& lights, std::vector<Buffer>& buffers)
@@ -283,9 +305,20 @@ VisibilityLists listsFromCapture(const Capture& capture, const std::string& name
     lists.opacity = copyFrom<float>(capture, name + "_opacity", Dtype::f4, count);
     lists.lobeOpacity = copyFrom<float>(capture, name + "_lobe_opacity", Dtype::f4, count);
     lists.rays = copyFrom<std::uint32_t>(capture, name + "_rays", Dtype::u4, count);
+    if (name == kMarched && capture.settings.proxies.cellWeight == ProxyCellWeight::seen)
+        lists.proxyHits = allOf<std::uint32_t>(capture, kProxyHits, Dtype::u4);
     refuseUnsorted(lists.first, lists.cells.size(), name + "_first");
     refuseBeyond(lists.cells, cells - 1, name + "_cells");
     return lists;
+}
+
+WeighedProxies weighedFromCapture(const Capture& capture, const ProxyCells& cells)
+{
+    WeighedProxies seen;
+    const auto hits = copyFrom<std::uint32_t>(capture, kProxyHits, Dtype::u4, cells.numbers.size());
+    seen.counts = countsOf(hits);
+    seen.lights = copyFrom<CellLight>(capture, kSeenLight, Dtype::f4, cells.lights.size());
+    return seen;
 }
 
 VirtualLights virtualLightsFromCapture(const Capture& capture)

@@ -10,12 +10,14 @@
 namespace lrsm {
 
 inline constexpr char kMarched[] = "pp.march", kFilteredLists[] = "pp.filter";  ///< first part of the names of a VisibilityLists' buffers
+inline constexpr char kProxyHits[] = "pp.march_proxy_hits", kSeenLight[] = "pp.seen_light";
 
 void describeProxies(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeProxyLight(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeProxyCells(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeMarched(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeFiltered(Catalogue& out, const DescribedFrame& frame, std::size_t light);
+void describeWeighed(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeListed(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeVirtualLights(Catalogue& out, const DescribedFrame& frame, std::size_t light);
 void describeImperfectMaps(Catalogue& out, const DescribedFrame& frame, std::size_t light);
@@ -33,6 +35,7 @@ void toBuffers(const PointProxies& proxies, std::vector<Buffer>& buffers);
 void toBuffers(const ProxyLight& light, std::vector<Buffer>& buffers);
 void toBuffers(const ProxyCells& cells, std::vector<Buffer>& buffers);
 void toBuffers(const VisibilityLists& lists, const std::string& name, std::vector<Buffer>& buffers);
+void toBuffers(const WeighedProxies& seen, std::vector<Buffer>& buffers);
 void toBuffers(const VirtualLights& lights, std::vector<Buffer>& buffers);
 void toBuffers(const ImperfectMaps& maps, std::vector<Buffer>& buffers);
 
@@ -41,6 +44,7 @@ PointProxies proxiesFromCapture(const Capture& capture);
 ProxyLight proxyLightFromCapture(const Capture& capture);
 ProxyCells proxyCellsFromCapture(const Capture& capture);
 VisibilityLists listsFromCapture(const Capture& capture, const std::string& name, std::size_t cells);
+WeighedProxies weighedFromCapture(const Capture& capture, const ProxyCells& cells);
 VirtualLights virtualLightsFromCapture(const Capture& capture);
 ImperfectMaps imperfectMapsFromCapture(const Capture& capture);
 

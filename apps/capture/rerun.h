@@ -59,6 +59,7 @@ void rerunProxyLight(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunProxyCells(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunProxyMarch(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunProxyFilter(const Capture& inputs, std::size_t light, Rerun& made);
+void rerunWeighProxies(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunProxyGather(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunIsmLights(const Capture& inputs, std::size_t light, Rerun& made);
 void rerunIsmMaps(const Capture& inputs, std::size_t light, Rerun& made);

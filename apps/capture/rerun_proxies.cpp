@@ -55,6 +55,12 @@ void rerunProxyFilter(const Capture& inputs, std::size_t, Rerun& made)
               kFilteredLists, made.outputs);
 }
 
+void rerunWeighProxies(const Capture& inputs, std::size_t, Rerun& made)
+{
+    const ProxyCells cells = proxyCellsFromCapture(inputs);
+    toBuffers(weighProxies(cells, copyFrom<std::uint32_t>(inputs, kProxyHits, Dtype::u4, cells.numbers.size())), made.outputs);
+}
+
 void rerunProxyGather(const Capture& inputs, std::size_t, Rerun& made)
 {
     const Settings& settings = inputs.settings;
@@ -63,13 +69,16 @@ void rerunProxyGather(const Capture& inputs, std::size_t, Rerun& made)
     const VisibilityLists lists = listsFromCapture(inputs, settings.proxies.filterRadius > 0 ? kFilteredLists : kMarched, cells.grid.count());
     std::optional<VplLobeIntegral> lobe;
     if (inputs.needs.specular) lobe.emplace(settings.vpl);
+    std::optional<WeighedProxies> seen;
+    if (settings.proxies.cellWeight == ProxyCellWeight::seen) seen = weighedFromCapture(inputs, cells);
     const GatherWorld world{.gbuffer = gbuffer,
                             .camera = inputs.camera,
                             .cells = cells,
                             .lists = lists,
                             .settings = settings.proxies,
                             .vpl = settings.vpl,
-                            .lobe = lobe ? &*lobe : nullptr};
+                            .lobe = lobe ? &*lobe : nullptr,
+                            .seen = seen ? &*seen : nullptr};
     cachedLightToBuffers(gatherFromCells(world, everyPixel(gbuffer), inputs.needs), made.outputs);
 }
 

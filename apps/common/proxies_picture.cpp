@@ -13,31 +13,6 @@ constexpr int kPartGap = 4;  ///< pixels between the parts
 constexpr Rgb8 kUnlit{24, 28, 64};
 constexpr std::size_t kDiscRows = 8;
 
-/// The disc that a ray meets: nearest in the first cell of which it meets one, as shadow rays take it. None: kNoProxy as its slot.
-struct MetDisc {
-    std::size_t slot = kNoProxy;
-    std::uint32_t cell = 0;
-    float distance = kInfinity;
-};
-MetDisc discMet(const ProxyCells& cells, const Vec3& origin, const Vec3& direction)
-{
-    MetDisc met;
-    const std::uint32_t cell = cellMet(cells, origin, direction);
-    if (cell == kNoCell) return met;
-    met.cell = cell;
-    for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot) {
-        const ProxyQuad& q = cells.quads[slot / 4];
-        const std::size_t k = slot & 3;
-        const Vec3 p = Vec3(q.x[k], q.y[k], q.z[k]) - origin, n(q.nx[k], q.ny[k], q.nz[k]);
-        const float t = glm::dot(n, p) / glm::dot(n, direction);
-        const Vec3 off = t * direction - p;
-        if (!(t > 0.0f && t < met.distance && glm::dot(off, off) <= cells.discRadius * cells.discRadius)) continue;
-        met.distance = t;
-        met.slot = slot;
-    }
-    return met;
-}
-
 /// A colour for a number: the bits of Fibonacci hashing, none of them dark.
 Rgb8 colourOfCell(std::uint32_t cell)
 {
@@ -76,13 +51,14 @@ Image<Rgb8> proxiesPicture(const SeenProxies& seen, const Camera& camera, int wi
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
             for (int x = 0; x < width; ++x) {
                 const CameraRay ray = pixelRay(camera, width, height, float(x) + 0.5f, float(y) + 0.5f);
-                const MetDisc met = discMet(seen.cells, ray.origin, ray.direction);
-                if (met.slot == kNoProxy) continue;
-                const ProxyQuad& q = seen.cells.quads[met.slot / 4];
-                const std::size_t k = met.slot & 3;
+                const ShadowRay sight(ray.origin, ray.direction);
+                const std::uint32_t cell = cellMet(seen.cells, sight);
+                if (cell == kNoCell) continue;
+                const std::size_t slot = nearestDisc(seen.cells, cell, sight).slot, k = slot & 3;
+                const ProxyQuad& q = seen.cells.quads[slot / 4];
                 radiance.at(x, y) = Vec3(q.red[k], q.green[k], q.blue[k]) / seen.cells.preExposure;
                 unlit.at(x, y) = radiance.at(x, y) == Vec3(0.0f) ? 1 : 0;
-                cells.at(x, y) = colourOfCell(met.cell);
+                cells.at(x, y) = colourOfCell(cell);
             }
     });
     Image<Rgb8> discs = tonemap(radiance, exposureStops);

@@ -84,27 +84,38 @@ Aabb boundsOf(const Keyed& sorted, const PointProxies& proxies, float discRadius
     return box;
 }
 
-/// Eq. 2 and 3 over one cell.
-CellLight lightOf(const Keyed& sorted, const PointProxies& proxies, const ProxyLight& light, std::size_t begin, std::size_t litEnd, std::size_t end)
+/// Eq. 2 and 3 over one cell, each proxy as often as `countOf(slot)` says.
+template <class Count>
+CellLight lightOf(const ProxyCells& cells, std::size_t cell, const Count& countOf)
 {
     glm::dvec4 mean(0.0), along[3] = {glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(0.0)};
     glm::dvec3 byFlux(0.0), all(0.0);
-    double flux = 0.0;
+    double flux = 0.0, counted = 0.0;
+    std::size_t lit = 0;
     Vec3 brightest(0.0f);
-    for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t number = sorted.number(i);
-        const glm::dvec4 strength = glm::dvec4(glm::dvec3(light.radiance[number]), 1.0) * double(proxies.area);
+    for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot) {
+        const double count = cells.numbers[slot] == kNoProxy ? 0.0 : countOf(slot);
+        if (count == 0.0) continue;
+        const ProxyQuad& q = cells.quads[slot / 4];
+        const std::size_t k = slot & 3;
+        const glm::dvec3 position(double(q.x[k]), double(q.y[k]), double(q.z[k]));
+        const Vec3 radiance(q.red[k], q.green[k], q.blue[k]);
+        const glm::dvec4 strength = count * (glm::dvec4(glm::dvec3(radiance), 1.0) * double(cells.area));
         mean += kQuarter * strength;
-        for (int axis = 0; axis < 3; ++axis) along[axis] += kHalf * double(light.normals[number][axis]) * strength;
+        along[0] += kHalf * double(q.nx[k]) * strength;
+        along[1] += kHalf * double(q.ny[k]) * strength;
+        along[2] += kHalf * double(q.nz[k]) * strength;
         const double own = strength.x + strength.y + strength.z;
-        byFlux += own * glm::dvec3(proxies.positions[number]);
-        all += glm::dvec3(proxies.positions[number]);
+        byFlux += own * position;
+        all += count * position;
         flux += own;
-        brightest = glm::max(brightest, light.radiance[number]);
+        counted += count;
+        brightest = glm::max(brightest, radiance);
+        if (slot < std::size_t(cells.litEnd[cell]) * 4) ++lit;
     }
     CellLight out{.mean = Vec4(mean), .along = {Vec4(along[0]), Vec4(along[1]), Vec4(along[2])}, .centroid = Vec3(0.0f)};
-    out.centroid = Vec3(flux > 0.0 ? byFlux / flux : all / double(end - begin));
-    out.litArea = proxies.area * float(litEnd - begin);
+    if (counted > 0.0) out.centroid = Vec3(flux > 0.0 ? byFlux / flux : all / counted);
+    out.litArea = cells.area * float(lit);
     out.brightest = brightest;
     return out;
 }
@@ -168,10 +179,26 @@ ProxyCells sortProxies(const Scene& scene, const PointProxies& proxies, const Pr
             fillQuads(sorted, proxies, light, from, litEnd, cells.first[cell], cells);
             fillQuads(sorted, proxies, light, litEnd, to, cells.litEnd[cell], cells);
             cells.bounds[cell] = boundsOf(sorted, proxies, cells.discRadius, from, to);
-            cells.lights[cell] = lightOf(sorted, proxies, light, from, litEnd, to);
+            cells.lights[cell] = lightOf(cells, cell, [](std::size_t) { return 1.0; });
         }
     });
     return cells;
+}
+
+std::vector<Float4> countsOf(const std::vector<std::uint32_t>& hits)
+{
+    std::vector<Float4> counts(hits.size() / 4);
+    for (std::size_t slot = 0; slot < hits.size(); ++slot) counts[slot / 4][slot & 3] = float(hits[slot]);
+    return counts;
+}
+
+WeighedProxies weighProxies(const ProxyCells& cells, const std::vector<std::uint32_t>& hits)
+{
+    WeighedProxies seen{countsOf(hits), std::vector<CellLight>(cells.lights.size())};
+    parallelFor(cells.lights.size(), kCellsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t cell = begin; cell < end; ++cell) seen.lights[cell] = lightOf(cells, cell, [&](std::size_t slot) { return double(hits[slot]); });
+    });
+    return seen;
 }
 
 }  // namespace lrsm

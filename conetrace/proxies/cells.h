@@ -85,4 +85,24 @@ Counters countersOf(const ProxyCells& cells);
 /// Sums of a cell are made in double, in the order of its proxies.
 ProxyCells sortProxies(const Scene& scene, const PointProxies& proxies, const ProxyLight& light, const ProxySettings& settings);
 
+/// How much each proxy counts in the mean radiance of its cell (pp_cell_weight=seen): as often as the frame's rays met it. So what is hidden from all, layers
+/// behind what is seen, counts nothing, and what is open counts more than what hardly is; both are of another brightness as a rule.
+struct WeighedProxies {
+    std::vector<Float4> counts;     ///< of each quad's four; exact up to 2^24
+    std::vector<CellLight> lights;  ///< of each cell, of proxies that many times
+};
+template <class Visit>
+void forEachArray(const WeighedProxies& seen, Visit&& visit)
+{
+    visit(seen.counts, ArrayTraits{seen.counts.size() * sizeof(Float4)});
+    visit(seen.lights, ArrayTraits{seen.lights.size() * sizeof(CellLight)});
+}
+inline Counters countersOf(const WeighedProxies&)
+{
+    return {};
+}
+std::vector<Float4> countsOf(const std::vector<std::uint32_t>& hits);
+/// `hits`: of each slot of ProxyCells::numbers.
+WeighedProxies weighProxies(const ProxyCells& cells, const std::vector<std::uint32_t>& hits);
+
 }  // namespace lrsm

@@ -93,14 +93,18 @@ Vec3 specularOf(const GatherWorld& world, const ListWeights& weights, LitSurface
     if (!(glm::dot(surface.mirror, world.gbuffer.geometricNormal.texels[pixel]) > 0.0f)) return Vec3(0.0f);
     const float roughness = world.gbuffer.roughness.texels[pixel];
     const VplLobeWeight lobe(world.vpl, phongExponent(roughness));
+    // Counts of rays are no measure of what fills the whole lobe.
+    const bool byLobe = world.settings.lobeNorm == ProxyLobeNorm::lobe;
+    const WeighedProxies* seen = byLobe ? nullptr : world.seen;
     LobeSum sum;
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float) {
-        const LobeSum own = isNear(world.cells, cell, surface.position, world.settings.range) ? lobeByProxies(world.cells, cell, surface, world.vpl, lobe)
-                                                                                              : lobeByHarmonics(world.cells, cell, surface, world.vpl, lobe);
+        const CellLight& light = seen ? seen->lights[cell] : world.cells.lights[cell];
+        const LobeSum own = isNear(world, cell, surface.position) ? lobeByProxies(world.cells, seen, cell, surface, world.vpl, lobe)
+                                                                  : lobeByHarmonics(light, world.cells.area, surface, world.vpl, lobe);
         sum.radiance += weight * own.radiance;
         sum.weight += weight * own.weight;
     });
-    if (world.settings.lobeNorm == ProxyLobeNorm::lobe) return sum.radiance / ((*world.lobe)(roughness)*world.cells.preExposure);
+    if (byLobe) return sum.radiance / ((*world.lobe)(roughness)*world.cells.preExposure);
     if (!(sum.weight > 0.0f)) return Vec3(0.0f);
     // Where the lobe looks out of the scene there is nothing to see.
     return sum.radiance * (blendOf(world.lists.lobeOpacity, weights) / (sum.weight * world.cells.preExposure));
@@ -142,14 +146,16 @@ ListWeights listWeights(const GBuffer& gbuffer, int divisor, int x, int y)
     return found;
 }
 
-WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, std::uint32_t end, const LitSurface& surface, const VplSettings& vpl)
+WholeCell cellByProxies(const ProxyCells& cells, const WeighedProxies* seen, std::uint32_t cell, std::uint32_t end, const LitSurface& surface,
+                        const VplSettings& vpl)
 {
     const VplNear near = vplNear(vpl, cells.area);
     Float4 red{}, green{}, blue{}, all{};
     for (std::uint32_t q = cells.first[cell]; q < end; ++q) {
         const ProxyQuad& quad = cells.quads[q];
         const QuadView view(quad, surface);
-        const Float4 geometry = atMost(view.receiver * view.light / (view.distance2 * (view.distance2 + near.softening)), near.most);
+        Float4 geometry = atMost(view.receiver * view.light / (view.distance2 * (view.distance2 + near.softening)), near.most);
+        if (seen) geometry *= seen->counts[q];
         red += quad.red * geometry;
         green += quad.green * geometry;
         blue += quad.blue * geometry;
@@ -158,9 +164,8 @@ WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, std::uint32
     return {Vec3(sumOf(red), sumOf(green), sumOf(blue)) * cells.area, sumOf(all) * cells.area / kPi};
 }
 
-WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+WholeCell cellByHarmonics(const CellLight& light, const LitSurface& surface, const VplSettings& vpl)
 {
-    const CellLight& light = cells.lights[cell];
     if (!(light.litArea > 0.0f)) return {};
     const VplNear near = vplNear(vpl, light.litArea);
     const Vec3 toLight = light.centroid - surface.position;
@@ -182,7 +187,8 @@ Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float shar
     return share * mean;
 }
 
-LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe)
+LobeSum lobeByProxies(const ProxyCells& cells, const WeighedProxies* seen, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl,
+                      const VplLobeWeight& lobe)
 {
     const VplNear near = vplNear(vpl, cells.area);
     Float4 red{}, green{}, blue{}, weights{};
@@ -194,7 +200,8 @@ LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurf
         Float4 weight{};
         for (int k = 0; k < 4; ++k)
             if (view.receiver[k] > 0.0f && view.light[k] > 0.0f) weight[k] = lobe.ofSquare(cosine2[k]) / std::sqrt(view.distance2[k]);
-        const Float4 share = weight * atMost(view.light / (view.distance2 + near.softening), near.most);
+        Float4 share = weight * atMost(view.light / (view.distance2 + near.softening), near.most);
+        if (seen) share *= seen->counts[q];
         red += quad.red * share;
         green += quad.green * share;
         blue += quad.blue * share;
@@ -203,10 +210,9 @@ LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurf
     return {Vec3(sumOf(red), sumOf(green), sumOf(blue)) * cells.area, sumOf(weights) * cells.area};
 }
 
-LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe)
+LobeSum lobeByHarmonics(const CellLight& light, float area, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe)
 {
-    const CellLight& light = cells.lights[cell];
-    const VplNear near = vplNear(vpl, std::max(light.litArea, cells.area));
+    const VplNear near = vplNear(vpl, std::max(light.litArea, area));
     const Vec3 toLight = light.centroid - surface.position;
     const float d2 = std::max(glm::dot(toLight, toLight), kLeastDistance2), distance = std::sqrt(d2);
     if (!(glm::dot(surface.normal, toLight) > 0.0f)) return {};
@@ -215,32 +221,9 @@ LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSu
     return {Vec3(sums), sums.w};
 }
 
-float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays)
+Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const WholeCell& whole, float weight, float share)
 {
-    const CellLight& light = cells.lights[cell];
-    const Vec3 toCell = light.centroid - surface.position;
-    const float d2 = std::max(glm::dot(toCell, toCell), kLeastDistance2), distance = std::sqrt(d2);
-    const float cosine = std::max(0.0f, glm::dot(surface.normal, toCell) / distance);
-    const float byArea = light.intensity(-toCell / distance).w * cosine / (d2 + light.litArea / kPi);
-    // A quarter of flux and area are in `mean`.
-    const float meanRadiance = 4.0f * (light.mean.x + light.mean.y + light.mean.z) / light.litArea;
-    const float byLight = (irradiance.x + irradiance.y + irradiance.z) / meanRadiance;
-    return std::max(kLeastChance, 1.0f - fastExp2(-kLog2E * rays * std::max(byArea, byLight) / kPi));
-}
-
-float raysOf(const VisibilityLists& lists, const ListWeights& weights)
-{
-    return blendOf(lists.rays, weights);
-}
-
-Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const LitSurface& surface, const WholeCell& whole, float weight, float share, float rays)
-{
-    switch (world.settings.cellWeight) {
-    case ProxyCellWeight::chance: return whole.irradiance * (weight / chanceOfMeeting(world.cells, cell, surface, whole.irradiance, rays));
-    case ProxyCellWeight::seen: return irradianceOfSeen(world.cells.lights[cell], whole, share);
-    case ProxyCellWeight::one: break;
-    }
-    return whole.irradiance * weight;
+    return world.settings.cellWeight == ProxyCellWeight::seen ? irradianceOfSeen(world.light(cell), whole, share) : whole.irradiance * weight;
 }
 
 ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int y)
@@ -253,13 +236,12 @@ ProxyPixel gatherProxyPixel(const GatherWorld& world, bool specular, int x, int 
     // Eq. 5 and 6.
     ProxyPixel out;
     const bool bySeen = world.settings.cellWeight == ProxyCellWeight::seen;
-    const float rays = raysOf(world.lists, weights);
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
-        if (!(cells.lights[cell].litArea > 0.0f) || (bySeen && !(share > 0.0f))) return;
-        const bool near = isNear(cells, cell, surface.position, world.settings.range);
+        if (!(world.light(cell).litArea > 0.0f) || (bySeen && !(share > 0.0f))) return;
+        const bool near = isNear(world, cell, surface.position);
         const std::uint32_t end = bySeen ? cells.first[cell + 1] : cells.litEnd[cell];
-        const WholeCell whole = near ? cellByProxies(cells, cell, end, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
-        out.irradiance += irradianceOfListed(world, cell, surface, whole, weight, share, rays);
+        const WholeCell whole = near ? cellByProxies(cells, world.seen, cell, end, surface, world.vpl) : cellByHarmonics(world.light(cell), surface, world.vpl);
+        out.irradiance += irradianceOfListed(world, cell, whole, weight, share);
         ++out.cells;
         if (near) out.proxies += 4 * (end - cells.first[cell]);
     });

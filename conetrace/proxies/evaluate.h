@@ -17,6 +17,9 @@ struct GatherWorld {
     const ProxySettings& settings;
     const VplSettings& vpl;
     const VplLobeIntegral* lobe = nullptr;  ///< read with pp_lobe_norm=lobe
+    const WeighedProxies* seen = nullptr;      ///< read with pp_cell_weight=seen; none: each proxy counts once
+
+    const CellLight& light(std::uint32_t cell) const { return seen ? seen->lights[cell] : cells.lights[cell]; }
 };
 
 // [P] gives no widths.
@@ -68,42 +71,30 @@ struct LitSurface {
 };
 
 /// Is the cell nearer than R of Eq. 6, so that it shines proxy by proxy?
-inline bool isNear(const ProxyCells& cells, std::uint32_t cell, const Vec3& position, float range)
+inline bool isNear(const GatherWorld& world, std::uint32_t cell, const Vec3& position)
 {
-    const Vec3 d = cells.lights[cell].centroid - position;
-    const float reach = range * cells.grid.diagonal();
+    const Vec3 d = world.light(cell).centroid - position;
+    const float reach = world.settings.range * world.cells.grid.diagonal();
     return glm::dot(d, d) < reach * reach;
 }
 
-/// A cell as a surface would see it with nothing between.
+/// A cell as a surface would see it with nothing between; with pp_cell_weight=seen each proxy as often as rays met it, so that only the quotient tells.
 struct WholeCell {
     Vec3 irradiance{0.0f};    ///< f(v) of Eq. 6, W/m^2 times the pre-exposure
     float formFactor = 0.0f;  ///< F: the part of a cosine-weighted hemisphere's rays that its proxies, lit or not, would stop
 };
 /// By its proxies up to `end`, a quad: all of the cell's, or, where F is not asked for, litEnd alone; or by its spherical harmonics.
-WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, std::uint32_t end, const LitSurface& surface, const VplSettings& vpl);
-inline WholeCell cellByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
-{
-    return cellByProxies(cells, cell, cells.first[cell + 1], surface, vpl);
-}
-WholeCell cellByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl);
-
-/// The chance that one of n diffuse rays from the surface meets a cell of which it gets this irradiance: 1 - exp(-n F). F is the cell's form factor, of all its
-/// proxies by harmonics, but no less than its light says: irradiance over pi times the mean radiance of those that shine. A cell that is listed over its chance
-/// to be is right in the mean (Horvitz and Thompson 1952), so that small cells, of which rays miss most, lose no light (pp_cell_weight=chance).
-float chanceOfMeeting(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const Vec3& irradiance, float rays);
-inline constexpr float kLeastChance = 1e-6f;
+WholeCell cellByProxies(const ProxyCells& cells, const WeighedProxies* seen, std::uint32_t cell, std::uint32_t end, const LitSurface& surface,
+                        const VplSettings& vpl);
+WholeCell cellByHarmonics(const CellLight& light, const LitSurface& surface, const VplSettings& vpl);
 
 /// What a cell gives of which a part is seen (pp_cell_weight=seen): V f(v), V = share / F, where `share` of the rays met it. What is hidden or missed counts as
-/// what it is, so that no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors that
-/// f and F have in common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
+/// what is seen, so that no light is lost or gained however few the rays or large the cells; as rays become many and the cells small it is the truth. Errors
+/// that f and F have in common cancel. No more than share pi times the radiance of the cell's brightest proxy, which quotients of harmonics may exceed.
 Vec3 irradianceOfSeen(const CellLight& light, const WholeCell& whole, float share);
 
-/// Diffuse rays of the lists, blended.
-float raysOf(const VisibilityLists& lists, const ListWeights& weights);
-
-/// What a listed cell gives, by pp_cell_weight. `weight` and `share` as of forListedCells, `rays` as of raysOf.
-Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const LitSurface& surface, const WholeCell& whole, float weight, float share, float rays);
+/// What a listed cell gives, by pp_cell_weight. `weight` and `share` as of forListedCells.
+Vec3 irradianceOfListed(const GatherWorld& world, std::uint32_t cell, const WholeCell& whole, float weight, float share);
 
 /// Sums over solid angles: radiance by w W, and w W, for the weight w of Eq. 7 and the solid angle W = a cos' / (d^2 + r^2) of a proxy, lit or not, above the
 /// surface's horizon. Their quotient is the mean radiance over the part of the lobe that sees proxies.
@@ -111,8 +102,9 @@ struct LobeSum {
     Vec3 radiance{0.0f};
     float weight = 0.0f;
 };
-LobeSum lobeByProxies(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe);
-LobeSum lobeByHarmonics(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe);
+LobeSum lobeByProxies(const ProxyCells& cells, const WeighedProxies* seen, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl,
+                      const VplLobeWeight& lobe);
+LobeSum lobeByHarmonics(const CellLight& light, float area, const LitSurface& surface, const VplSettings& vpl, const VplLobeWeight& lobe);
 
 /// What one pixel takes.
 struct ProxyPixel {

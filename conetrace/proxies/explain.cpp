@@ -34,25 +34,26 @@ std::string cellsText(const GatherWorld& world, const ListWeights& weights, cons
 {
     const ProxyCells& cells = world.cells;
     std::string text =
-        "\ncells in them, and the part of each that rays say is seen; irradiance by their proxies, or by their spherical harmonics beyond pp_range (Eq. 6)\n"
-        "       cell  weight  seen     distance  lit  unlit  by         irradiance\n";
+        "\ncells in them, and the part of the rays that met each; irradiance by their proxies, or by their spherical harmonics beyond pp_range (Eq. 6)\n"
+        "       cell  weight  met      distance  lit  unlit  by         irradiance\n";
     float most = 0.0f;
     std::size_t dark = 0;
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
-        if (!(cells.lights[cell].litArea > 0.0f)) {
+        if (!(world.light(cell).litArea > 0.0f)) {
             ++dark;
             return;
         }
-        const bool near = isNear(cells, cell, surface.position, world.settings.range);
-        const WholeCell whole = near ? cellByProxies(cells, cell, surface, world.vpl) : cellByHarmonics(cells, cell, surface, world.vpl);
-        const Vec3 light = irradianceOfListed(world, cell, surface, whole, weight, share, raysOf(world.lists, weights)) / cells.preExposure;
+        const bool near = isNear(world, cell, surface.position);
+        const WholeCell whole =
+            near ? cellByProxies(cells, world.seen, cell, cells.first[cell + 1], surface, world.vpl) : cellByHarmonics(world.light(cell), surface, world.vpl);
+        const Vec3 light = irradianceOfListed(world, cell, whole, weight, share) / cells.preExposure;
         const IVec3 at = cellOf(cells.grid, cell);
         std::size_t lit = 0, unlit = 0;
         for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot)
             if (cells.numbers[slot] != kNoProxy) ++(slot < std::size_t(cells.litEnd[cell]) * 4 ? lit : unlit);
         text +=
             formatted("  %3d,%3d,%3d  %.4f  %.5f  %8.4f  %4zu  %4zu  %s  %.4g %.4g %.4g\n", at.x, at.y, at.z, double(weight),
-                      double(whole.formFactor > 0.0f ? share / whole.formFactor : 0.0f), double(glm::length(cells.lights[cell].centroid - surface.position)),
+                      double(share), double(glm::length(world.light(cell).centroid - surface.position)),
                       lit, unlit, near ? "proxies  " : "harmonics", double(light.x), double(light.y), double(light.z));
         if (near && light.x + light.y + light.z > most) {
             most = light.x + light.y + light.z;
@@ -102,7 +103,8 @@ std::string explainProxies(const GatherInput& input, int x, int y)
                             .lists = seen.lists(),
                             .settings = input.settings.proxies,
                             .vpl = input.settings.vpl,
-                            .lobe = lobe ? &*lobe : nullptr};
+                            .lobe = lobe ? &*lobe : nullptr,
+                            .seen = seen.weights()};
     const LitSurface surface{.position = gbuffer.position.texels[pixel], .normal = gbuffer.normal.texels[pixel]};
     const ListWeights weights = listWeights(gbuffer, world.lists.divisor, x, y);
 

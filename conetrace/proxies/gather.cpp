@@ -24,6 +24,8 @@ ProxyVisibility seeCells(const GatherInput& input, const ProxyCells& cells, Pass
     seen.marched = log.run("pp march", kSurfacePass, [&] { return marchShadowRays(world); });
     if (settings.filterRadius > 0)
         seen.filtered = log.run("pp filter", kSurfacePass, [&] { return filterVisibility(seen.marched, input.gbuffer, cells, settings); });
+    if (settings.cellWeight == ProxyCellWeight::seen)
+        seen.seen = log.run("pp weigh", kSurfacePass, [&] { return weighProxies(cells, seen.marched.proxyHits); });
     return seen;
 }
 
@@ -40,7 +42,8 @@ Gathered gatherProxies(const GatherInput& input, PassLog& log)
                             .lists = seen.lists(),
                             .settings = settings,
                             .vpl = input.settings.vpl,
-                            .lobe = lobe ? &*lobe : nullptr};
+                            .lobe = lobe ? &*lobe : nullptr,
+                            .seen = seen.weights()};
 
     const bool reduces = settings.gatherDivisor > 1;
     const ReducedGBuffer reduced =

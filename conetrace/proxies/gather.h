@@ -17,9 +17,11 @@ ProxyCells buildProxyCells(const GatherInput& input, PassLog& log);
 struct ProxyVisibility {
     VisibilityLists marched;                  ///< V_p
     std::optional<VisibilityLists> filtered;  ///< V'_p; none with pp_filter_radius=0
+    std::optional<WeighedProxies> seen;          ///< with pp_cell_weight=seen
     const VisibilityLists& lists() const { return filtered ? *filtered : marched; }
+    const WeighedProxies* weights() const { return seen ? &*seen : nullptr; }
 };
-/// The passes "pp march" and, where there is a filter, "pp filter".
+/// The passes "pp march" and, where they are asked for, "pp filter" and "pp weigh".
 ProxyVisibility seeCells(const GatherInput& input, const ProxyCells& cells, PassLog& log);
 
 /// The passes above, "pp gather" and, with pp_gather_divisor above 1, "pp reduce" before it and "pp upsample" after it.

@@ -2,6 +2,8 @@
 
 #include "core/base/parallel.h"
 
+#include <atomic>
+
 namespace lrsm {
 namespace {
 
@@ -41,6 +43,8 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
 {
     const GBuffer& g = world.gbuffer;
     const Blocks blocks{g.width, g.height, world.settings.marchDivisor};
+    // Sums of integers are the same in any order.
+    std::vector<std::uint32_t> proxyHits(world.settings.cellWeight == ProxyCellWeight::seen ? world.cells.numbers.size() : 0);
     std::vector<VisibilityLists> rows(std::size_t(blocks.rows()));
     parallelFor(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
         CellSet seen(world.cells.grid.count());
@@ -53,9 +57,13 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
                 if (g.covered(pixel)) {
                     const Vec3 origin = rayStart(world, pixel);
                     forShadowRays(world, pixel, column, int(row), [&](const Vec3& direction, bool isDiffuse) {
-                        const std::uint32_t cell = cellMet(world.cells, origin, direction);
-                        if (cell != kNoCell) seen.add(cell, isDiffuse ? 1u : 0u);
+                        const ShadowRay ray(origin, direction);
+                        const std::uint32_t cell = cellMet(world.cells, ray);
                         (isDiffuse ? diffuse : lobe).add(cell != kNoCell);
+                        if (cell == kNoCell) return;
+                        seen.add(cell, isDiffuse ? 1u : 0u);
+                        if (!proxyHits.empty())
+                            std::atomic_ref(proxyHits[nearestDisc(world.cells, cell, ray).slot]).fetch_add(1, std::memory_order_relaxed);
                     });
                     seen.moveTo(out);
                 }
@@ -66,7 +74,9 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
             }
         }
     });
-    return joinRows(rows, blocks.divisor);
+    VisibilityLists lists = joinRows(rows, blocks.divisor);
+    lists.proxyHits = std::move(proxyHits);
+    return lists;
 }
 
 }  // namespace lrsm

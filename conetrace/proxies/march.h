@@ -19,11 +19,10 @@ Vec3 lobeRay(const Vec3& mirror, float exponent, int j, int count, int rotation)
 
 /// The cell whose disc a ray meets first, or kNoCell.
 inline constexpr std::uint32_t kNoCell = ~std::uint32_t(0);
-inline std::uint32_t cellMet(const ProxyCells& cells, const Vec3& origin, const Vec3& direction)
+inline std::uint32_t cellMet(const ProxyCells& cells, const ShadowRay& ray)
 {
-    const ShadowRay ray(origin, direction);
     std::uint32_t met = kNoCell;
-    walkCells(cells.grid, origin, direction, [&](std::uint32_t cell) {
+    walkCells(cells.grid, ray.origin, ray.direction, [&](std::uint32_t cell) {
         if (!meetsDisc(cells, cell, ray)) return false;
         met = cell;
         return true;

@@ -25,13 +25,17 @@ std::size_t occupiedCells(const MemoryQuestion& question, const CellGrid& grid)
     return all.cells.size();
 }
 
+/// Two quads a cell may not be full.
+std::size_t quadsOf(const MemoryQuestion& question, std::size_t occupied)
+{
+    const PassReport* found = reportOf(question, "pp cells");
+    return found ? std::size_t(counterSum(found->counters, "quads")) : std::size_t(question.settings.proxies.count) / 4 + 2 * occupied;
+}
+
 MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid, std::size_t occupied)
 {
     const ProxySettings& settings = question.settings.proxies;
-    const PassReport* found = reportOf(question, "pp cells");
-    // Two quads a cell may not be full.
-    const std::size_t most = std::size_t(settings.count) / 4 + 2 * occupied;
-    const std::size_t quads = found ? std::size_t(counterSum(found->counters, "quads")) : most;
+    const std::size_t quads = quadsOf(question, occupied);
     ProxyCells like;
     like.half = settings.storage == Storage::gpu;
     const std::size_t proxyGpu = 16 + (like.half ? 8u : 16u),
@@ -46,13 +50,13 @@ MemoryRow cellsRow(const MemoryQuestion& question, const CellGrid& grid, std::si
         .measured = {}};
 }
 
-MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, const std::string& structure, std::size_t mostACell)
+MemoryRow listsRow(const MemoryQuestion& question, const std::string& pass, const std::string& structure, std::size_t mostACell, std::size_t besides = 0)
 {
     const Blocks blocks{question.width, question.height, question.settings.proxies.marchDivisor};
     const std::size_t count = std::size_t(blocks.columns()) * std::size_t(blocks.rows());
     const PassReport* found = reportOf(question, pass);
     const std::size_t cells = found ? std::size_t(counterSum(found->counters, "listed_cells")) : question.unknowns == Unknowns::least ? 0 : count * mostACell;
-    const std::size_t bytes = (count + 1 + 2 * cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t));
+    const std::size_t bytes = (count + 1 + 2 * cells) * sizeof(std::uint32_t) + count * (2 * sizeof(float) + sizeof(std::uint32_t)) + besides;
     return {.structure = structure,
             .pass = pass,
             .detail = std::string(found ? "" : "up to ") + std::to_string(cells) + " cells",
@@ -71,10 +75,16 @@ std::vector<MemoryRow> predictProxies(const MemoryQuestion& question)
     const std::size_t rays = std::size_t(settings.rays + (question.needs.specular ? settings.lobeRays : 0));
     const std::size_t occupied = question.rendered || question.unknowns == Unknowns::least ? 0 : occupiedCells(question, grid);
     std::vector<MemoryRow> rows = {cellsRow(question, grid, occupied)};
-    rows.push_back(listsRow(question, "pp march", "lists", std::min(rays, occupied)));
+    const bool weighs = settings.cellWeight == ProxyCellWeight::seen;
+    const std::size_t slots = 4 * quadsOf(question, occupied);
+    rows.push_back(listsRow(question, "pp march", "lists", std::min(rays, occupied), weighs ? slots * sizeof(std::uint32_t) : 0));
     if (settings.filterRadius > 0) {
         const auto window = std::size_t(2 * settings.filterRadius + 1);
         rows.push_back(listsRow(question, "pp filter", "filtered", std::min(rays * window * window, occupied)));
+    }
+    if (weighs) {
+        const std::size_t bytes = slots * sizeof(float) + grid.count() * sizeof(CellLight);
+        rows.push_back({.structure = "weights", .pass = "pp weigh", .detail = "", .predicted = bytes, .predictedGpu = bytes, .table2 = "", .measured = {}});
     }
     return rows;
 }

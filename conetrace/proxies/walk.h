@@ -70,24 +70,49 @@ inline bool mayMeet(const ShadowRay& ray, const Aabb& box)
     return !(enter > leave);
 }
 
-/// Does a ray from `origin`, at any t > 0, meet the disc of one of a cell's proxies? Of the nearest's cell the ray asks no more, so which of them it is does
-/// not matter.
+/// Of a ray and four discs: does it meet each, and where.
+struct QuadHits {
+    Float4 toPlane, along;  ///< n.(p - o), n.d: it meets the disc's plane at their quotient
+    Int4 hits;
+    QuadHits(const ProxyQuad& quad, const ShadowRay& ray, float radius2)
+    {
+        const Float4 dx = splat(ray.direction.x), dy = splat(ray.direction.y), dz = splat(ray.direction.z);
+        const Float4 px = quad.x - splat(ray.origin.x), py = quad.y - splat(ray.origin.y), pz = quad.z - splat(ray.origin.z);
+        toPlane = quad.nx * px + quad.ny * py + quad.nz * pz;
+        along = quad.nx * dx + quad.ny * dy + quad.nz * dz;
+        // |o + t d - p| <= r without the quotient.
+        const Float4 ax = dx * toPlane - px * along, ay = dy * toPlane - py * along, az = dz * toPlane - pz * along;
+        hits = (ax * ax + ay * ay + az * az <= radius2 * (along * along)) & (toPlane * along > splat(0.0f));
+    }
+};
+
+/// Does a ray meet, at any t > 0, the disc of one of a cell's proxies? Which of them it is does not matter to a list.
 inline bool meetsDisc(const ProxyCells& cells, std::uint32_t cell, const ShadowRay& ray)
 {
     if (cells.first[cell] == cells.first[cell + 1] || !mayMeet(ray, cells.bounds[cell])) return false;
-    const Vec3 &origin = ray.origin, &direction = ray.direction;
     const float radius2 = cells.discRadius * cells.discRadius;
-    const Float4 ox = splat(origin.x), oy = splat(origin.y), oz = splat(origin.z), dx = splat(direction.x), dy = splat(direction.y), dz = splat(direction.z);
     for (std::uint32_t q = cells.first[cell]; q < cells.first[cell + 1]; ++q) {
-        const ProxyQuad& quad = cells.quads[q];
-        // t = n.(p - o) / n.d; |o + t d - p| <= r without the quotient.
-        const Float4 px = quad.x - ox, py = quad.y - oy, pz = quad.z - oz;
-        const Float4 toPlane = quad.nx * px + quad.ny * py + quad.nz * pz, along = quad.nx * dx + quad.ny * dy + quad.nz * dz;
-        const Float4 ax = dx * toPlane - px * along, ay = dy * toPlane - py * along, az = dz * toPlane - pz * along;
-        const Int4 hits = (ax * ax + ay * ay + az * az <= radius2 * (along * along)) & (toPlane * along > splat(0.0f));
+        const Int4 hits = QuadHits(cells.quads[q], ray, radius2).hits;
         if ((hits[0] | hits[1] | hits[2] | hits[3]) != 0) return true;
     }
     return false;
+}
+
+/// The nearest disc of such a cell along the ray, as its place in ProxyCells::numbers; the first of equals.
+struct MetDisc {
+    std::size_t slot = 0;
+    float distance = kInfinity;  ///< of the ray's direction
+};
+inline MetDisc nearestDisc(const ProxyCells& cells, std::uint32_t cell, const ShadowRay& ray)
+{
+    const float radius2 = cells.discRadius * cells.discRadius;
+    MetDisc met;
+    for (std::uint32_t q = cells.first[cell]; q < cells.first[cell + 1]; ++q) {
+        const QuadHits quad(cells.quads[q], ray, radius2);
+        for (std::size_t k = 0; k < 4; ++k)
+            if (quad.hits[k] != 0 && quad.toPlane[k] / quad.along[k] < met.distance) met = {std::size_t(q) * 4 + k, quad.toPlane[k] / quad.along[k]};
+    }
+    return met;
 }
 
 }  // namespace lrsm

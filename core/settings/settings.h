@@ -239,22 +239,22 @@ struct VplSettings {
 
 enum class ProxyHash { position, index };          ///< what Russian roulette draws from: the triangle's place, or its number
 enum class ProxyFilterTest { printed, surface };   ///< whose lists a block takes: by depth and normal; or those of its own surface, near by
-enum class ProxyCellWeight { chance, seen, one };  ///< of a listed cell: over the chance that a ray meets it; by the part that rays see; or as it is
+enum class ProxyCellWeight { seen, one };          ///< of a listed cell: by the part of it that rays see; or as it is
 enum class ProxyLobeNorm { visible, lobe };        ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
 
 /// Voxelized point proxies with a visibility filter.
 struct ProxySettings {
-    int count = 65536;  ///< proxies in the scene's reach, 1..2^22
+    int count = 170000;  ///< proxies in the scene's reach, 1..2^22
     ProxyHash hash = ProxyHash::position;
-    float radius = 2.0f;    ///< of a disc that occludes, over that of the surface a proxy stands for, (0, 8]
-    int grid = 24;          ///< cells along the longest side, 1..256
+    float radius = 1.6f;    ///< of a disc that occludes, over that of the surface a proxy stands for, (0, 8]
+    int grid = 48;          ///< cells along the longest side, 1..256
     int rays = 64;          ///< shadow rays a marched pixel, 1..256
     int lobeRays = 16;      ///< more within the specular lobe, 0..256
     int marchDivisor = 4;   ///< one pixel in a block of so many each way is marched for, 1..16, power of two
     int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
     int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
-    ProxyFilterTest filterTest = ProxyFilterTest::printed;
-    ProxyCellWeight cellWeight = ProxyCellWeight::chance;
+    ProxyFilterTest filterTest = ProxyFilterTest::surface;
+    ProxyCellWeight cellWeight = ProxyCellWeight::seen;
     float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]
     ProxyLobeNorm lobeNorm = ProxyLobeNorm::visible;
     Storage storage = Storage::gpu;

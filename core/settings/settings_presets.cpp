@@ -178,6 +178,8 @@ Settings proxiesPaper()
     s.proxies.count = 24000;
     s.proxies.grid = 6;
     s.proxies.marchDivisor = 8;
+    s.proxies.radius = 2.0f;
+    s.proxies.filterTest = ProxyFilterTest::printed;
     s.proxies.cellWeight = ProxyCellWeight::one;
     s.proxies.range = 2.0f;
     return s;
@@ -188,6 +190,7 @@ Settings ism()
 {
     Settings s;
     s.method = Method::ism;
+    s.proxies.count = 65536;
     s.proxies.radius = 1.5f;
     return s;
 }

@@ -34,7 +34,7 @@ void plantAnywhere(Buffer& buffer)
 TEST_CASE("check of method proxies: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone",
           "[capture][check][proxies]")
 {
-    findsEachDefect(goldenOf("proxies"), "pp", plantAnywhere, {"pp place", "pp light", "pp cells", "pp march", "pp filter", "pp gather"});
+    findsEachDefect(goldenOf("proxies"), "pp", plantAnywhere, {"pp place", "pp light", "pp cells", "pp march", "pp filter", "pp weigh", "pp gather"});
 }
 
 TEST_CASE("check of method ism: a defect in any buffer of its passes is found in that buffer, and in what is made from it alone", "[capture][check][ism]")

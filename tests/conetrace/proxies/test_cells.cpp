@@ -129,7 +129,7 @@ TEST_CASE("proxy cells: a ray visits the cells that a fine walk along it does, i
     CHECK(visited > 3 * rays);
 }
 
-TEST_CASE("proxy cells: a ray meets the first cell of which it meets a disc, against all discs in double", "[proxies]")
+TEST_CASE("proxy cells: a ray meets the first cell of which it meets a disc, and of that the nearest, against all discs in double", "[proxies]")
 {
     const Scene scene = *makeBuiltinScene("cornell-box");
     const ProxyCells cells = cellsOf(scene, {.count = 800, .radius = 1.0f, .grid = 5});
@@ -140,8 +140,9 @@ TEST_CASE("proxy cells: a ray meets the first cell of which it meets a disc, aga
     for (int k = 0; k < 400; ++k) {
         const Vec3 origin = scene.bounds.min + scene.bounds.extent() * Vec3(inside(random), inside(random), inside(random)), direction = randomUnit(random);
         const glm::dvec3 o(origin), d(direction);
-        // Per cell: is any of its discs met; and by how much the nearest miss or hit is decided.
-        std::vector<bool> meets(cells.grid.count(), false);
+        // Per cell: which of its discs is met first, and where; and by how much the nearest miss or hit is decided.
+        std::vector<double> meets(cells.grid.count(), double(kInfinity));
+        std::vector<std::size_t> nearest(cells.grid.count(), 0);
         double closest = 1.0;
         for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell)
             for (std::uint32_t slot = cells.first[cell] * 4; slot < cells.first[cell + 1] * 4; ++slot) {
@@ -152,17 +153,26 @@ TEST_CASE("proxy cells: a ray meets the first cell of which it meets a disc, aga
                 const double t = glm::dot(n, p - o) / glm::dot(n, d);
                 const glm::dvec3 away = o + t * d - p;
                 closest = std::min(closest, std::abs(glm::dot(away, away) / radius2 - 1.0));
-                if (t > 0.0 && glm::dot(away, away) <= radius2) meets[cell] = true;
+                if (!(t > 0.0 && glm::dot(away, away) <= radius2)) continue;
+                closest = std::min(closest, std::abs(t - meets[cell]));
+                if (t < meets[cell]) nearest[cell] = slot;
+                meets[cell] = std::min(meets[cell], t);
             }
         if (closest < 1e-4) continue;
         std::uint32_t expected = kNoCell;
         walkCells(cells.grid, origin, direction, [&](std::uint32_t cell) {
-            if (meets[cell]) expected = cell;
-            return bool(meets[cell]);
+            if (meets[cell] < double(kInfinity)) expected = cell;
+            return meets[cell] < double(kInfinity);
         });
-        REQUIRE(cellMet(cells, origin, direction) == expected);
+        const ShadowRay ray(origin, direction);
+        REQUIRE(cellMet(cells, ray) == expected);
+        if (expected != kNoCell) {
+            const MetDisc disc = nearestDisc(cells, expected, ray);
+            REQUIRE(disc.slot == nearest[expected]);
+            REQUIRE(double(disc.distance) == Approx(meets[expected]).epsilon(1e-3));
+        }
         ++(expected == kNoCell ? through : met);
     }
-    CHECK(met > 200);
+    CHECK(met > 150);
     CHECK(through > 20);
 }

@@ -7,6 +7,7 @@
 #include "catch.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 using namespace lrsm;
@@ -16,12 +17,18 @@ namespace {
 
 constexpr double kPiDouble = std::numbers::pi;
 
+/// By all of a cell's proxies, each once.
+WholeCell allOf(const ProxyCells& cells, std::uint32_t cell, const LitSurface& surface, const VplSettings& vpl)
+{
+    return cellByProxies(cells, nullptr, cell, cells.first[cell + 1], surface, vpl);
+}
+
 /// Irradiance by all cells: what nothing hides.
 Vec3 irradianceByAll(const ProxyCells& cells, const LitSurface& surface, const VplSettings& vpl, bool byProxies)
 {
     Vec3 sum(0.0f);
     for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell)
-        sum += (byProxies ? cellByProxies(cells, cell, surface, vpl) : cellByHarmonics(cells, cell, surface, vpl)).irradiance;
+        sum += (byProxies ? allOf(cells, cell, surface, vpl) : cellByHarmonics(cells.lights[cell], surface, vpl)).irradiance;
     return sum;
 }
 
@@ -47,11 +54,11 @@ TEST_CASE("proxies: one disc on its axis gives pi L r^2 / (d^2 + r^2), at any di
     const ProxyCells cells = sortProxies(scene, one, shining(one, Vec3(1, 2, 3)), {.grid = 1});
     const LitSurface surface{.position = Vec3(0.5f, 0.5f, 0.5f + distance), .normal = Vec3(0, 0, -1)};
     const double r2 = 0.3 / kPiDouble, d2 = double(distance) * double(distance);
-    CHECK(double(cellByProxies(cells, 0, surface, {}).irradiance.z) == Approx(kPiDouble * 3.0 * r2 / (d2 + r2)).epsilon(1e-4));
+    CHECK(double(allOf(cells, 0, surface, {}).irradiance.z) == Approx(kPiDouble * 3.0 * r2 / (d2 + r2)).epsilon(1e-4));
     // Clamped, and bare.
     const double bare = 3.0 * 0.3 / d2;
-    CHECK(double(cellByProxies(cells, 0, surface, {.singularity = VplSingularity::none}).irradiance.z) == Approx(bare).epsilon(1e-4));
-    CHECK(double(cellByProxies(cells, 0, surface, {.singularity = VplSingularity::clamp, .clamp = 2.0f}).irradiance.z) ==
+    CHECK(double(allOf(cells, 0, surface, {.singularity = VplSingularity::none}).irradiance.z) == Approx(bare).epsilon(1e-4));
+    CHECK(double(allOf(cells, 0, surface, {.singularity = VplSingularity::clamp, .clamp = 2.0f}).irradiance.z) ==
           Approx(std::min(bare, 3.0 * 2.0)).epsilon(1e-4));
 }
 
@@ -101,7 +108,8 @@ TEST_CASE("proxies: within a furnace of radiance L every lobe sees L, and irradi
         for (const bool byProxies : {true, false}) {
             LobeSum sum;
             for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell) {
-                const LobeSum own = byProxies ? lobeByProxies(cells, cell, surface, {}, lobe) : lobeByHarmonics(cells, cell, surface, {}, lobe);
+                const LobeSum own = byProxies ? lobeByProxies(cells, nullptr, cell, surface, {}, lobe)
+                                              : lobeByHarmonics(cells.lights[cell], cells.area, surface, {}, lobe);
                 sum.radiance += own.radiance;
                 sum.weight += own.weight;
             }
@@ -123,7 +131,7 @@ TEST_CASE("proxies: a cell's form factor is the closed form of its surface, lit 
     const ProxyCells cells = sortProxies(scene, proxies, light, settings);
     const LitSurface surface{.position = Vec3(0.5f, 0.5f, 20.0f), .normal = Vec3(0, 0, -1)};
     const double factor = 1.0 / (kPiDouble * 400.0);
-    const WholeCell exact = cellByProxies(cells, 0, surface, {}), far = cellByHarmonics(cells, 0, surface, {});
+    const WholeCell exact = allOf(cells, 0, surface, {}), far = cellByHarmonics(cells.lights[0], surface, {});
     CHECK(double(exact.formFactor) == Approx(factor).epsilon(0.01));
     CHECK(double(far.formFactor) == Approx(0.75 * factor).epsilon(0.01));  // order 1 at 0 degrees
     // Rays find a third of it: half of that shines, whichever way f and F are summed.
@@ -151,7 +159,7 @@ TEST_CASE("proxies: what harmonics say of a cell's radiance is no more than its 
     for (int k = 0; k < 50; ++k) {
         const Vec3 away = randomUnit(random);
         const LitSurface surface{.position = Vec3(0.5f) + 5.0f * away, .normal = -away};
-        const Vec3 seen = irradianceOfSeen(cells.lights[0], cellByHarmonics(cells, 0, surface, {}), 0.25f);
+        const Vec3 seen = irradianceOfSeen(cells.lights[0], cellByHarmonics(cells.lights[0], surface, {}), 0.25f);
         REQUIRE(double(seen.x) <= 0.25 * kPiDouble * 3.0 * 1.0001);
         bounded += double(seen.x) > 0.2499 * kPiDouble * 3.0 ? 1 : 0;
     }
@@ -160,25 +168,30 @@ TEST_CASE("proxies: what harmonics say of a cell's radiance is no more than its 
     CHECK(irradianceOfSeen(cells.lights[0], {}, 0.5f) == Vec3(0.0f));
 }
 
-TEST_CASE("proxies: the chance that a ray meets a cell is that of its form factor, and bounds what a cell gives over it", "[proxies]")
+TEST_CASE("proxies: each counts in its cell's mean radiance as often as rays met it, and one that none met counts nothing", "[proxies]")
 {
-    // A square far away, half of its proxies dark: F = cos cos' A / (pi d^2).
+    // A square far away. Of four proxies one shines 2, one 6, one 100, and one is dark.
     const Scene scene = quadScene({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}});
-    const ProxySettings settings{.count = 1000, .grid = 1};
-    const PointProxies proxies = placeProxies(scene, settings, TextureFilter::trilinear);
+    PointProxies proxies;
+    proxies.area = 0.25f;
+    proxies.positions = {Vec3(0.25f, 0.25f, 0), Vec3(0.75f, 0.25f, 0), Vec3(0.25f, 0.75f, 0), Vec3(0.75f, 0.75f, 0)};
+    proxies.normals.assign(4, Vec3(0, 0, 1));
     ProxyLight light = shining(proxies, Vec3(2.0f));
-    for (std::size_t i = 0; i < proxies.size(); i += 2) light.radiance[i] = Vec3(0.0f);
-    const ProxyCells cells = sortProxies(scene, proxies, light, settings);
-    const LitSurface surface{.position = Vec3(0.5f, 0.5f, 20.0f), .normal = Vec3(0, 0, -1)};
-    const Vec3 irradiance = cellByProxies(cells, 0, surface, {}).irradiance;
-    // By harmonics: 3/4 of it at 0 degrees; half of it shines, so that light alone says half.
-    const double factor = 1.0 / (kPiDouble * 400.0);
-    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 100.0f)) == Approx(1.0 - std::exp(-100.0 * 0.75 * factor)).epsilon(0.01));
-    CHECK(double(chanceOfMeeting(cells, 0, surface, irradiance, 1e6f)) == Approx(1.0));
-    // Many cells, few rays: what is given over its chance is at most pi L / n.
-    const double most = double((irradiance / chanceOfMeeting(cells, 0, surface, irradiance, 4.0f)).x);
-    CHECK(most <= kPiDouble * 2.0 / 4.0 * 1.01);
-    CHECK(most > double(irradiance.x));
+    light.radiance = {Vec3(2.0f), Vec3(6.0f), Vec3(100.0f), Vec3(0.0f)};
+    const ProxyCells cells = sortProxies(scene, proxies, light, {.grid = 1});
+    const std::map<std::uint32_t, std::uint32_t> met = {{0, 3}, {1, 1}, {2, 0}, {3, 4}};
+    std::vector<std::uint32_t> hits(cells.numbers.size(), 0);
+    for (std::size_t slot = 0; slot < hits.size(); ++slot)
+        if (cells.numbers[slot] != kNoProxy) hits[slot] = met.at(cells.numbers[slot]);
+    const WeighedProxies seen = weighProxies(cells, hits);
+    CHECK(seen.lights[0].brightest == Vec3(6.0f));
+    CHECK(double(seen.lights[0].litArea) == Approx(0.5));
+    const LitSurface surface{.position = Vec3(0.5f, 0.5f, 50.0f), .normal = Vec3(0, 0, -1)};
+    for (const WholeCell& whole : {cellByProxies(cells, &seen, 0, cells.first[1], surface, {}), cellByHarmonics(seen.lights[0], surface, {})})
+        CHECK(double(irradianceOfSeen(seen.lights[0], whole, 0.5f).x) == Approx(0.5 * kPiDouble * (3.0 * 2.0 + 6.0) / 8.0).epsilon(1e-3));
+    const LitSurface glossy{.position = surface.position, .normal = surface.normal, .mirror = Vec3(0, 0, -1)};
+    const LobeSum lobe = lobeByProxies(cells, &seen, 0, glossy, {}, VplLobeWeight({}, 1.0f));
+    CHECK(double(lobe.radiance.x / lobe.weight) == Approx((3.0 * 2.0 + 6.0) / 8.0).epsilon(1e-3));
 }
 
 TEST_CASE("virtual lights: Eq. 7 and its integral against double precision", "[proxies]")

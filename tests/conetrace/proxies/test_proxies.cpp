@@ -59,10 +59,39 @@ TEST_CASE("method proxies: a sphere lit from its centre, whose every point sees 
     settings.proxies.count = 20000;
     settings.proxies.rays = 256;
     settings.proxies.range = 1e6f;
+    settings.proxies.radius = 2.0f;  // no ray between the discs
     const Frame frame = renderSmall(*scene, settings);
     double mean = 0.0;
     for (const Vec3& e : frame.irradiance.texels) mean += double(e.y) / double(frame.irradiance.texels.size());
     CHECK(mean == Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("method proxies: dark surfaces that nobody sees, in the cells of lit ones, take no light away", "[proxies]")
+{
+    // Plates behind each wall of the Cornell box, within the cells of its own proxies.
+    Scene scene = *makeBuiltinScene("cornell-box");
+    Settings settings = smallProxies();
+    settings.proxies.marchDivisor = 2;
+    settings.proxies.radius = 2.0f;
+    const auto meanOf = [&] {
+        const Frame frame = renderSmall(scene, settings);
+        double sum = 0.0;
+        for (const Vec3& e : frame.irradiance.texels) sum += double(e.y) / double(frame.irradiance.texels.size());
+        return sum;
+    };
+    const double without = meanOf();
+    const std::vector<Mesh> own = scene.meshes;
+    const Aabb box = scene.bounds;
+    const std::size_t before = scene.triangleCount();
+    for (const Mesh& mesh : own) {
+        Mesh behind = mesh;
+        for (std::size_t v = 0; v < behind.positions.size(); ++v) behind.positions[v] -= 0.03f * box.longestSide() * behind.normals[v];
+        scene.meshes.push_back(behind);
+    }
+    updateBounds(scene);
+    settings.proxies.count *= 2;  // as many on the walls
+    REQUIRE(scene.triangleCount() == 2 * before);
+    CHECK(meanOf() == Approx(without).epsilon(0.05));
 }
 
 TEST_CASE("method proxies: every list is in its filtered one, and without a filter light is missing", "[proxies]")
@@ -130,5 +159,5 @@ TEST_CASE("method proxies: what is predicted of a rendered frame is what it held
         CHECK(before[i].predicted >= *before[i].measured);
         CHECK(double(before[i].predicted) <= kListsFactor * double(*before[i].measured));
     }
-    CHECK(rows == 3);
+    CHECK(rows == 4);
 }
