@@ -18,15 +18,13 @@ done
 if [ -z "${CHOICES:-}" ]; then
     CHOICES=$out/choices.txt
     # Blocks are in pixels: at 320x180 those of half the presets' size.
-    rooms="--preset proxies --set pp_cell_weight=seen --set pp_filter_test=surface"
-    small="$rooms --set pp_march_divisor=2"
+    small="--preset proxies --set pp_march_divisor=2"
     {
         echo "\`balanced\`: --preset balanced"
         echo "\`proxies\`: --preset proxies"
-        echo "*rooms*: $rooms"
-        echo "... \`pp_march_divisor=2\`: $small"
-        for value in pp_cell_weight=chance pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=5 pp_filter_test=printed pp_cell_weight=one pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=1000 \
-            pp_grid=6 pp_grid=12 pp_grid=32 pp_count=24000 pp_count=170000 pp_radius=1 pp_radius=3 pp_gather_divisor=4 pp_march_divisor=1; do
+        echo "\`proxies\`, \`pp_march_divisor=2\`: $small"
+        for value in pp_cell_weight=one pp_filter_test=printed pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=5 pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=1000 \
+            pp_grid=12 pp_grid=24 pp_grid=96 pp_count=24000 pp_count=65536 pp_count=400000 pp_radius=1 pp_radius=1.3 pp_radius=2 pp_gather_divisor=1 pp_gather_divisor=4 pp_march_divisor=1; do
             echo "... \`$value\`: $small --set $value"
         done
         echo "\`proxies-paper\`: --preset proxies-paper"

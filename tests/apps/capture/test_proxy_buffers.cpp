@@ -54,6 +54,7 @@ TEST_CASE("proxy buffers: through files and back every pass has the hash that th
     CHECK(hashOf(cells) == expected["pp cells"]);
     CHECK(hashOf(listsFromCapture(capture, kMarched, cells.grid.count())) == expected["pp march"]);
     if (!other) CHECK(hashOf(listsFromCapture(capture, kFilteredLists, cells.grid.count())) == expected["pp filter"]);
+    CHECK(hashOf(weighedFromCapture(capture, cells)) == expected["pp weigh"]);
     CHECK(hashOf(gatheredFromCapture(capture)) == expected["pp gather"]);
     checkRunsAnew(capture);
 }
