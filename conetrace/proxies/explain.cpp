@@ -3,12 +3,14 @@
 #include "conetrace/frame/pixel_text.h"
 #include "conetrace/proxies/gather.h"
 
+#include <algorithm>
 #include <optional>
+#include <span>
 
 namespace lrsm {
 namespace {
 
-constexpr std::size_t kShownProxies = 8;
+constexpr std::size_t kShownCells = 24, kShownProxies = 8;
 
 std::string listsText(const GatherWorld& world, const VisibilityLists& marched, const ListWeights& weights)
 {
@@ -30,37 +32,50 @@ IVec3 cellOf(const CellGrid& grid, std::uint32_t hash)
     return {h % grid.size.x, h / grid.size.x % grid.size.y, h / (grid.size.x * grid.size.y)};
 }
 
-std::string cellsText(const GatherWorld& world, const ListWeights& weights, const LitSurface& surface, std::uint32_t& brightest)
+/// A cell that the pixel reads, and what it gives.
+struct ListedCell {
+    std::uint32_t cell;
+    float weight, share;
+    bool near;
+    Vec3 irradiance;
+    float sum() const { return irradiance.x + irradiance.y + irradiance.z; }
+};
+
+/// Those in which something shines, brightest first.
+std::vector<ListedCell> listedCells(const GatherWorld& world, const ListWeights& weights, const LitSurface& surface)
 {
     const ProxyCells& cells = world.cells;
-    std::string text =
-        "\ncells in them, and the part of the rays that met each; irradiance by their proxies, or by their spherical harmonics beyond pp_range (Eq. 6)\n"
-        "       cell  weight  met      distance  lit  unlit  by         irradiance\n";
-    float most = 0.0f;
-    std::size_t dark = 0;
+    std::vector<ListedCell> listed;
     forListedCells(world.lists, weights, [&](std::uint32_t cell, float weight, float share) {
-        if (!(world.light(cell).litArea > 0.0f)) {
-            ++dark;
-            return;
-        }
+        if (!(world.light(cell).litArea > 0.0f)) return;
         const bool near = isNear(world, cell, surface.position);
         const WholeCell whole =
             near ? cellByProxies(cells, world.seen, cell, cells.first[cell + 1], surface, world.vpl) : cellByHarmonics(world.light(cell), surface, world.vpl);
-        const Vec3 light = irradianceOfListed(world, cell, whole, weight, share) / cells.preExposure;
-        const IVec3 at = cellOf(cells.grid, cell);
-        std::size_t lit = 0, unlit = 0;
-        for (std::size_t slot = std::size_t(cells.first[cell]) * 4; slot < std::size_t(cells.first[cell + 1]) * 4; ++slot)
-            if (cells.numbers[slot] != kNoProxy) ++(slot < std::size_t(cells.litEnd[cell]) * 4 ? lit : unlit);
-        text +=
-            formatted("  %3d,%3d,%3d  %.4f  %.5f  %8.4f  %4zu  %4zu  %s  %.4g %.4g %.4g\n", at.x, at.y, at.z, double(weight),
-                      double(share), double(glm::length(world.light(cell).centroid - surface.position)),
-                      lit, unlit, near ? "proxies  " : "harmonics", double(light.x), double(light.y), double(light.z));
-        if (near && light.x + light.y + light.z > most) {
-            most = light.x + light.y + light.z;
-            brightest = cell;
-        }
+        listed.push_back({cell, weight, share, near, irradianceOfListed(world, cell, whole, weight, share) / cells.preExposure});
     });
-    return text + formatted("  and %zu in which no proxy shines\n", dark);
+    std::stable_sort(listed.begin(), listed.end(), [](const ListedCell& a, const ListedCell& b) { return a.sum() > b.sum(); });
+    return listed;
+}
+
+std::string cellsText(const GatherWorld& world, const std::vector<ListedCell>& listed, const LitSurface& surface)
+{
+    const ProxyCells& cells = world.cells;
+    std::string text =
+        "\ncells in them that shine, brightest first, and the part of the rays that met each; irradiance by their proxies, or by their spherical harmonics beyond "
+        "pp_range (Eq. 6)\n       cell  weight  met      distance  lit  unlit  by         irradiance\n";
+    const std::size_t shown = std::min(listed.size(), kShownCells);
+    for (const ListedCell& own : std::span(listed).first(shown)) {
+        const IVec3 at = cellOf(cells.grid, own.cell);
+        std::size_t lit = 0, unlit = 0;
+        for (std::size_t slot = std::size_t(cells.first[own.cell]) * 4; slot < std::size_t(cells.first[own.cell + 1]) * 4; ++slot)
+            if (cells.numbers[slot] != kNoProxy) ++(slot < std::size_t(cells.litEnd[own.cell]) * 4 ? lit : unlit);
+        text += formatted("  %3d,%3d,%3d  %.4f  %.5f  %8.4f  %4zu  %4zu  %s  %.4g %.4g %.4g\n", at.x, at.y, at.z, double(own.weight), double(own.share),
+                          double(glm::length(world.light(own.cell).centroid - surface.position)), lit, unlit, own.near ? "proxies  " : "harmonics",
+                          double(own.irradiance.x), double(own.irradiance.y), double(own.irradiance.z));
+    }
+    Vec3 rest(0.0f);
+    for (const ListedCell& own : std::span(listed).subspan(shown)) rest += own.irradiance;
+    return text + formatted("  and %zu more: %.4g %.4g %.4g\n", listed.size() - shown, double(rest.x), double(rest.y), double(rest.z));
 }
 
 std::string proxiesText(const GatherWorld& world, const LitSurface& surface, std::uint32_t cell)
@@ -113,9 +128,10 @@ std::string explainProxies(const GatherInput& input, int x, int y)
         formatted("%d x %d x %d cells of %.5g m; it lies in %d,%d,%d\n", cells.grid.size.x, cells.grid.size.y, cells.grid.size.z, double(cells.grid.cellSize),
                   cells.grid.cellAt(surface.position).x, cells.grid.cellAt(surface.position).y, cells.grid.cellAt(surface.position).z);
     text += listsText(world, seen.marched, weights);
-    std::uint32_t brightest = kNoCell;
-    text += cellsText(world, weights, surface, brightest);
-    if (brightest != kNoCell) text += proxiesText(world, surface, brightest);
+    const std::vector<ListedCell> listed = listedCells(world, weights, surface);
+    text += cellsText(world, listed, surface);
+    const auto brightestNear = std::find_if(listed.begin(), listed.end(), [](const ListedCell& own) { return own.near; });
+    if (brightestNear != listed.end()) text += proxiesText(world, surface, brightestNear->cell);
     const ProxyPixel light = gatherProxyPixel(world, input.needs.specular, x, y);
     text += formatted("\nirradiance %.6g %.6g %.6g, opacity %.5f, of %llu cells that shine\n", double(light.irradiance.x), double(light.irradiance.y),
                       double(light.irradiance.z), double(light.opacity), static_cast<unsigned long long>(light.cells));
