@@ -79,6 +79,7 @@ TEST_CASE("program: bad usage and bad input are one clear line and exit code 2, 
         {"render cornell-box extra -o out", "extra"},
         {"render cornell-box --view v.json -o out", "v.json"},
         {"capture cornell-box -o out --preset rays", "take visibility=cones"},
+        {"capture cornell-box -o out --set voxel_cascades=2", "take voxel_cascades=1"},
         {"settings --preset best", "literal, paper, fast, balanced, fine, accurate"},
     }));
     CAPTURE(c.arguments);
