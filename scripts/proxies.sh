@@ -23,7 +23,7 @@ if [ -z "${CHOICES:-}" ]; then
         echo "\`balanced\`: --preset balanced"
         echo "\`proxies\`: --preset proxies"
         echo "\`proxies\`, \`pp_march_divisor=2\`: $small"
-        for value in pp_cell_weight=one pp_filter_test=printed pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=5 pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=1000 \
+        for value in pp_cell_weight=one pp_filter_test=printed pp_filter_radius=0 pp_filter_radius=1 pp_filter_radius=3 pp_filter_radius=5 pp_rays=16 pp_rays=256 pp_range=0 pp_range=2 pp_range=1000 \
             pp_grid=12 pp_grid=24 pp_grid=96 pp_count=24000 pp_count=65536 pp_count=400000 pp_radius=1 pp_radius=1.3 pp_radius=2 pp_gather_divisor=1 pp_gather_divisor=4 pp_march_divisor=1; do
             echo "... \`$value\`: $small --set $value"
         done

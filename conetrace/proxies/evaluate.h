@@ -17,7 +17,7 @@ struct GatherWorld {
     const ProxySettings& settings;
     const VplSettings& vpl;
     const VplLobeIntegral* lobe = nullptr;  ///< read with pp_lobe_norm=lobe
-    const WeighedProxies* seen = nullptr;      ///< read with pp_cell_weight=seen; none: each proxy counts once
+    const WeighedProxies* seen = nullptr;   ///< read with pp_cell_weight=seen; none: each proxy counts once
 
     const CellLight& light(std::uint32_t cell) const { return seen ? seen->lights[cell] : cells.lights[cell]; }
 };

@@ -61,7 +61,8 @@ std::string cellsText(const GatherWorld& world, const std::vector<ListedCell>& l
 {
     const ProxyCells& cells = world.cells;
     std::string text =
-        "\ncells in them that shine, brightest first, and the part of the rays that met each; irradiance by their proxies, or by their spherical harmonics beyond "
+        "\ncells in them that shine, brightest first, and the part of the rays that met each; irradiance by their proxies, or by their spherical harmonics "
+        "beyond "
         "pp_range (Eq. 6)\n       cell  weight  met      distance  lit  unlit  by         irradiance\n";
     const std::size_t shown = std::min(listed.size(), kShownCells);
     for (const ListedCell& own : std::span(listed).first(shown)) {

@@ -17,7 +17,7 @@ ProxyCells buildProxyCells(const GatherInput& input, PassLog& log);
 struct ProxyVisibility {
     VisibilityLists marched;                  ///< V_p
     std::optional<VisibilityLists> filtered;  ///< V'_p; none with pp_filter_radius=0
-    std::optional<WeighedProxies> seen;          ///< with pp_cell_weight=seen
+    std::optional<WeighedProxies> seen;       ///< with pp_cell_weight=seen
     const VisibilityLists& lists() const { return filtered ? *filtered : marched; }
     const WeighedProxies* weights() const { return seen ? &*seen : nullptr; }
 };

@@ -24,7 +24,8 @@ struct VisibilityLists {
     std::vector<float> opacity;       ///< of each block's pixel: part of its diffuse shadow rays that met a disc
     std::vector<float> lobeOpacity;   ///< the same of its rays in the specular lobe; 1 where it has none
     std::vector<std::uint32_t> rays;  ///< diffuse shadow rays that a block's list is of; of a filtered one those of all lists joined
-    /// With pp_cell_weight=seen, for each slot of ProxyCells::numbers: how many of all marched pixels' shadow rays met that proxy first. Of filtered lists none.
+    /// With pp_cell_weight=seen, for each slot of ProxyCells::numbers: how many of all marched pixels' shadow rays met that proxy first. Of filtered lists
+    /// none.
     std::vector<std::uint32_t> proxyHits;
 
     /// The part of block b's diffuse rays that met the cell of an entry of its list.

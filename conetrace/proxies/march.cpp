@@ -62,8 +62,7 @@ VisibilityLists marchShadowRays(const MarchWorld& world)
                         (isDiffuse ? diffuse : lobe).add(cell != kNoCell);
                         if (cell == kNoCell) return;
                         seen.add(cell, isDiffuse ? 1u : 0u);
-                        if (!proxyHits.empty())
-                            std::atomic_ref(proxyHits[nearestDisc(world.cells, cell, ray).slot]).fetch_add(1, std::memory_order_relaxed);
+                        if (!proxyHits.empty()) std::atomic_ref(proxyHits[nearestDisc(world.cells, cell, ray).slot]).fetch_add(1, std::memory_order_relaxed);
                     });
                     seen.moveTo(out);
                 }

@@ -237,10 +237,10 @@ struct VplSettings {
     bool operator==(const VplSettings&) const = default;
 };
 
-enum class ProxyHash { position, index };          ///< what Russian roulette draws from: the triangle's place, or its number
-enum class ProxyFilterTest { printed, surface };   ///< whose lists a block takes: by depth and normal; or those of its own surface, near by
-enum class ProxyCellWeight { seen, one };          ///< of a listed cell: by the part of it that rays see; or as it is
-enum class ProxyLobeNorm { visible, lobe };        ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
+enum class ProxyHash { position, index };         ///< what Russian roulette draws from: the triangle's place, or its number
+enum class ProxyFilterTest { printed, surface };  ///< whose lists a block takes: by depth and normal; or those of its own surface, near by
+enum class ProxyCellWeight { seen, one };         ///< of a listed cell: by the part of it that rays see; or as it is
+enum class ProxyLobeNorm { visible, lobe };       ///< what a specular sum is divided by: the weights of the proxies listed, or the whole lobe
 
 /// Voxelized point proxies with a visibility filter.
 struct ProxySettings {
@@ -252,7 +252,7 @@ struct ProxySettings {
     int lobeRays = 16;      ///< more within the specular lobe, 0..256
     int marchDivisor = 4;   ///< one pixel in a block of so many each way is marched for, 1..16, power of two
     int gatherDivisor = 2;  ///< ... is gathered for, 1..8, power of two
-    int filterRadius = 3;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
+    int filterRadius = 2;   ///< m = n of Eq. 4, marched pixels, 0..8; 0: no filter
     ProxyFilterTest filterTest = ProxyFilterTest::surface;
     ProxyCellWeight cellWeight = ProxyCellWeight::seen;
     float range = 8.0f;  ///< R of Eq. 6, cell diagonals: nearer cells shine proxy by proxy, [0, 1e6]

@@ -179,6 +179,7 @@ Settings proxiesPaper()
     s.proxies.grid = 6;
     s.proxies.marchDivisor = 8;
     s.proxies.radius = 2.0f;
+    s.proxies.filterRadius = 3;
     s.proxies.filterTest = ProxyFilterTest::printed;
     s.proxies.cellWeight = ProxyCellWeight::one;
     s.proxies.range = 2.0f;

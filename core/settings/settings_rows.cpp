@@ -349,11 +349,12 @@ void addProxyRows(std::vector<SettingRow>& rows)
                                            "within the window and near by what its rays meet",
                                            "ours; [P] Eq. 4: printed"},
                                           {"printed", "surface"}));
-    rows.push_back(choice<&P::cellWeight>({"pp_cell_weight", "",
-                                           "a listed cell counts by the part of it that is seen, the rays that met it over those that would were it all seen; or "
-                                           "as it is",
-                                           "ours; [P] Eq. 5: one"},
-                                          {"seen", "one"}));
+    rows.push_back(
+        choice<&P::cellWeight>({"pp_cell_weight", "",
+                                "a listed cell counts by the part of it that is seen, the rays that met it over those that would were it all seen; or "
+                                "as it is",
+                                "ours; [P] Eq. 5: one"},
+                               {"seen", "one"}));
     rows.push_back(real<&P::range>(
         {"pp_range", "cell diagonals", "R of Eq. 6: nearer cells shine proxy by proxy, farther ones by their spherical harmonics", "ours; [P] gives none"},
         {0, 1e6f}));

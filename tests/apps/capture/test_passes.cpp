@@ -65,6 +65,7 @@ TEST_CASE("passes: are asked for by family, by light, and as a command line spel
     CHECK(passNames("!") ==
           "voxelize, voxel-mips, rsm, shadow, lrsm!, vct-surface, vct-inject, vct-mips, rc-light, rc-mips, gbuffer, direct, cones, vct-cones, rc-clusters, "
           "rc-places, rc-fill, "
-          "rc-convolve, rc-gather, pp-place, pp-light, pp-cells, pp-march, pp-filter, pp-weigh, pp-gather, ism-lights, ism-maps, ism-gather, filter, specular-filter, "
+          "rc-convolve, rc-gather, pp-place, pp-light, pp-cells, pp-march, pp-filter, pp-weigh, pp-gather, ism-lights, ism-maps, ism-gather, filter, "
+          "specular-filter, "
           "smooth, composite");
 }

@@ -108,8 +108,8 @@ TEST_CASE("proxies: within a furnace of radiance L every lobe sees L, and irradi
         for (const bool byProxies : {true, false}) {
             LobeSum sum;
             for (std::uint32_t cell = 0; cell < cells.grid.count(); ++cell) {
-                const LobeSum own = byProxies ? lobeByProxies(cells, nullptr, cell, surface, {}, lobe)
-                                              : lobeByHarmonics(cells.lights[cell], cells.area, surface, {}, lobe);
+                const LobeSum own =
+                    byProxies ? lobeByProxies(cells, nullptr, cell, surface, {}, lobe) : lobeByHarmonics(cells.lights[cell], cells.area, surface, {}, lobe);
                 sum.radiance += own.radiance;
                 sum.weight += own.weight;
             }

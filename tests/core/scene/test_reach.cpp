@@ -176,8 +176,8 @@ TEST_CASE("reach: a lamp far away widens it only where its light matters to what
     const Vec3 lamp(away, height, 0.0f), home = scene.lights.at(0).intensity;
     const auto reachWith = [&](float times) {
         Scene lit = scene;
-        const std::vector<Light> lamps = point ? splitPointLight(lamp, times * home, kInfinity, "lamp")
-                                               : std::vector<Light>{spotLight(lamp, Vec3(away, 0, 0), times * home, 0.5f, 0.7f)};
+        const std::vector<Light> lamps =
+            point ? splitPointLight(lamp, times * home, kInfinity, "lamp") : std::vector<Light>{spotLight(lamp, Vec3(away, 0, 0), times * home, 0.5f, 0.7f)};
         lit.lights.insert(lit.lights.end(), lamps.begin(), lamps.end());
         return reachAfter(lit);
     };
