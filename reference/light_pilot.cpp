@@ -85,7 +85,7 @@ class Pilot {
                 if (!weights.any()) return;
                 const SobolBlock choices = points(pixel, Purpose::pilotChoice, rayBits_);
                 for (std::uint32_t i = 0; i < (1u << rayBits_); ++i) {
-                    const std::size_t chosen = weights.choose(choices.point(i).u).index;
+                    const std::size_t chosen = weights.choose(choices.first(i)).index;
                     const Vec3 direction = glm::normalize(pool.position(chosen) - receiver.origin);
                     const bool reached = radianceFrom(tracer, pool, chosen, receiver, direction) != Vec3(0.0f);
                     const std::optional<LightCoordinates> at = guide_.maps[pool.points[chosen].light].coordinates(pool.position(chosen));
@@ -187,6 +187,7 @@ std::vector<float> baseWeights(const LightGrids& grids, std::span<const Finding>
 {
     SpreadCounts counts(grids);
     for (const TexelCount& one : countTexels(grids, points)) counts.add(one, 1);
+    counts.spread();
     const auto total = double(counts.totalLight());
     if (total == 0.0) return {};
     std::vector<float> weights(grids.texels());

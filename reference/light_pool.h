@@ -30,25 +30,29 @@
 /// come.
 namespace lrsm {
 
+inline constexpr std::size_t kPoolLanes = 4;
+
 struct LightPool {
     std::size_t drawn = 0;  ///< N: with the rays that found nothing lit
 
-    // One entry a lit point. What weighing reads, an array a number:
+    // One entry a lit point. What weighing reads, an array a number, with zeros up to a multiple of kPoolLanes:
     std::vector<float> x, y, z;     ///< position
     std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
     std::vector<float> nx, ny, nz;  ///< unit shading normal
     std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
     std::vector<float> brightness;  ///< sum of the diffuse radiance's channels, times `reach`
+    /// What is read of a point that has been chosen, side by side.
     struct Point {
-        SurfaceHit hit;
         Surface surface;
-        LightSample sample;  ///< of the light
+        float density = 0.0f, brightness = 0.0f;  ///< as above
+        float reach = 1.0f;                       ///< how likely the point is to be seen
+        bool glossy = false;                      ///< its specular reflection counts, too
+        Vec3 diffuse{0.0f};                       ///< its diffuse radiance
         std::uint32_t light = 0;
-        float reach = 1.0f;   ///< how likely the point is to be seen
-        bool glossy = false;  ///< its specular reflection counts, too
+        SurfaceHit hit;
+        LightSample sample;  ///< of the light
         Vec3 radianceTowards(const Vec3& toViewer) const
         {
-            const Vec3 diffuse = diffuseRadiance(surface, sample);
             return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse;
         }
     };
@@ -57,8 +61,7 @@ struct LightPool {
     Transport transport = Transport::single;
 
     std::size_t size() const { return points.size(); }
-    Vec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }
-    Vec3 geometricNormal(std::size_t i) const { return {gx[i], gy[i], gz[i]}; }
+    Vec3 position(std::size_t i) const { return points[i].surface.position; }
 };
 
 /// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.

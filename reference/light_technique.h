@@ -71,15 +71,16 @@ class PoolWeights {
 template <class Respond>
 Vec3 connection(const LightPool& pool, std::size_t j, const LightReceiver& receiver, float candidates, const Respond& respond, Vec3& direction)
 {
-    const Vec3 way = pool.position(j) - receiver.origin;
+    const LightPool::Point& point = pool.points[j];
+    const Vec3 way = point.surface.position - receiver.origin, normal = point.surface.normal;
     const float distance2 = glm::dot(way, way);
     direction = way / std::sqrt(distance2);
-    const float leaving = -glm::dot(pool.geometricNormal(j), direction);
+    const float leaving = -glm::dot(point.surface.geometricNormal, direction);
     const bool facing = leaving > 0.0f && glm::dot(receiver.geometricNormal, direction) > 0.0f &&
-                        -(pool.nx[j] * direction.x + pool.ny[j] * direction.y + pool.nz[j] * direction.z) >= kLeastFacing;
+                        -(normal.x * direction.x + normal.y * direction.y + normal.z * direction.z) >= kLeastFacing;
     if (!facing) return Vec3(0.0f);
     const Response response = respond(direction);
-    const float both = response.density * leaving + candidates * pool.density[j] * distance2;
+    const float both = response.density * leaving + candidates * point.density * distance2;
     return both > 0.0f ? response.value * (candidates * leaving / both) : Vec3(0.0f);
 }
 
@@ -89,10 +90,11 @@ float poolWeight(const LightPool& pool, std::size_t j, const LightReceiver& rece
 {
     Vec3 direction;
     const Vec3 value = connection(pool, j, receiver, candidates, respond, direction);
+    const LightPool::Point& point = pool.points[j];
     const float sum = value.x + value.y + value.z;
-    if (!(sum > 0.0f) || !pool.points[j].glossy) return pool.brightness[j] * sum;
-    const Vec3 specular = specularRadiance(pool.points[j].surface, pool.points[j].sample, -direction);
-    return (pool.brightness[j] + pool.points[j].reach * (specular.x + specular.y + specular.z)) * sum;
+    if (!(sum > 0.0f) || !point.glossy) return point.brightness * sum;
+    const Vec3 specular = specularRadiance(point.surface, point.sample, -direction);
+    return (point.brightness + point.reach * (specular.x + specular.y + specular.z)) * sum;
 }
 
 template <class Respond>

@@ -63,27 +63,36 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     return pools;
 }
 
-void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group)
+void TileSampler::choose(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end) const
+{
+    draws.chosen.clear();
+    if (!draws.weights.any()) return;
+    const SobolBlock choices = key_.points(pixel_, purpose, kDrawBits);
+    for (std::uint32_t i = begin << kDrawBits; i < end << kDrawBits; ++i) draws.chosen.push_back(draws.weights.choose(choices.first(i)));
+}
+
+void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t begin, std::uint32_t end)
 {
     const PrimaryHits& primary = tracer_.primary();
     pixel_ = std::uint32_t(pixel);
+    begin_ = begin;
     surface_ = &primary.surface.texels[pixel];
     toEye_ = primary.toEye.texels[pixel];
     receiver_ = receiverAt(tracer, *surface_);
     diffusePoints_ = key_.points(pixel_, Purpose::diffuseDirection);
     diffuse_.pool = &pools.diffuse;
-    diffuse_.choices = key_.points(pixel_, Purpose::diffusePool, kDrawBits);
     diffuse_.light.furtherPool = pools.furtherDiffuse.size() > 0 ? &pools.furtherDiffuse : nullptr;
     diffuse_.weights.weighDiffuse(pools.diffuse, receiver_, kPoolCandidates);
+    choose(diffuse_, Purpose::diffusePool, begin, end);
     if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return;
 
     lobePoints_ = key_.points(pixel_, Purpose::lobeDirection);
     lobe_.pool = &pools.lobe;
-    lobe_.choices = key_.points(pixel_, Purpose::lobePool, kDrawBits);
     lobe_.light.furtherPool = cone_.light.furtherPool = pools.furtherLobe.size() > 0 ? &pools.furtherLobe : nullptr;
-    const float u = key_.points(pixel_, Purpose::lobeSubset).point(group << groupBits_).u;
+    const float u = key_.points(pixel_, Purpose::lobeSubset).first(begin >> groupBits_ << groupBits_);
     const auto start = std::size_t(u * float(kSpecularStride));
     lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, LobeResponse{*surface_, toEye_}, start, kSpecularStride);
+    choose(lobe_, Purpose::lobePool, begin, end);
     if (channels_ < kConeChannels) return;
     conePoints_ = key_.points(pixel_, Purpose::coneDirection);
 }
@@ -134,10 +143,9 @@ Vec3 TileSampler::traced(Tracer& tracer, const Vec3& direction, const Response& 
 template <class Respond>
 Vec3 TileSampler::connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const
 {
-    if (!draws.weights.any()) return Vec3(0.0f);
+    if (draws.chosen.empty()) return Vec3(0.0f);
     Vec3 sum(0.0f);
-    for (std::uint32_t draw = 0; draw < 1u << kDrawBits; ++draw) {
-        const Choice chosen = draws.weights.choose(draws.choices.point(index << kDrawBits | draw).u);
+    for (const Choice& chosen : std::span(draws.chosen).subspan((index - begin_) << kDrawBits, 1u << kDrawBits)) {
         Vec3 direction;
         const Vec3 response = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, direction);
         if (response != Vec3(0.0f)) sum += response * chosen.overDensity * radianceFrom(tracer, *draws.pool, chosen.index, receiver_, direction);

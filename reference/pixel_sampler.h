@@ -48,7 +48,7 @@ class TileSampler {
             const GroupPools pools = drawPools(tracer, begin);
             forEachPixel(tracer_.guide().tiles, tile_, [&](std::size_t pixel, std::size_t number) {
                 if (!tracer_.primary().covered.texels[pixel]) return;
-                beginPixel(tracer, pools, pixel, begin / size);
+                beginPixel(tracer, pools, pixel, begin, end);
                 for (std::uint32_t index = begin; index < end; ++index) visit(pixel, number, sample(tracer, index));
             });
         }
@@ -59,13 +59,16 @@ class TileSampler {
     struct Draws {
         const LightPool* pool = nullptr;
         PoolWeights weights;
-        SobolBlock choices{{}, 0};
+        std::vector<Choice> chosen;  ///< 2^kDrawBits for each of the group's samples, those of its first sample first
         PathLight light;
     };
 
     /// The pools of the group that sample `first` is of. Their rays are counted with the group's first sample alone: ranges that cut a group count them once.
     GroupPools drawPools(Tracer& tracer, std::uint32_t first) const;
-    void beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group);
+    /// For samples [begin, end), which are of one group.
+    void beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t begin, std::uint32_t end);
+    /// Draws from weighed pools while the weights are at hand, and side by side: a search for one need not wait for another's.
+    void choose(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end) const;
     Sample sample(Tracer& tracer, std::uint32_t index);
     void addSpecular(Tracer& tracer, std::uint32_t index, Sample& sample);
     Vec3 traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index, bool& hit) const;
@@ -82,7 +85,7 @@ class TileSampler {
     TileGuide guide_;
 
     // Of the pixel at hand
-    std::uint32_t pixel_ = 0;
+    std::uint32_t pixel_ = 0, begin_ = 0;
     const Surface* surface_ = nullptr;
     Vec3 toEye_{0.0f};
     LightReceiver receiver_;
