@@ -55,11 +55,18 @@ class TileSampler {
     }
 
   private:
-    /// One layer's way to draw from a pool.
+    /// A point of a pool on the way to a sample.
+    struct Connection {
+        std::size_t index = 0;
+        Vec3 direction{0.0f};
+        Vec3 factor{0.0f};  ///< of the radiance that comes from there
+    };
+    /// One layer's way to draw directions and from a pool: for all of a group's samples at once, so that the arithmetic of one need not wait for that of another.
     struct Draws {
+        std::vector<Vec3> directions;  ///< one a sample
         const LightPool* pool = nullptr;
         PoolWeights weights;
-        std::vector<Choice> chosen;  ///< 2^kDrawBits for each of the group's samples, those of its first sample first
+        std::vector<Connection> connections;  ///< 2^kDrawBits a sample; empty: no light comes from the pool
         PathLight light;
     };
 
@@ -67,13 +74,14 @@ class TileSampler {
     GroupPools drawPools(Tracer& tracer, std::uint32_t first) const;
     /// For samples [begin, end), which are of one group.
     void beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t begin, std::uint32_t end);
-    /// Draws from weighed pools while the weights are at hand, and side by side: a search for one need not wait for another's.
-    void choose(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end) const;
-    Sample sample(Tracer& tracer, std::uint32_t index);
-    void addSpecular(Tracer& tracer, std::uint32_t index, Sample& sample);
-    Vec3 traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index, bool& hit) const;
+    /// \param direct  UnitPoint to Vec3
+    template <class Direct>
+    void aim(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Direct& direct) const;
     template <class Respond>
-    Vec3 connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const;
+    void connect(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Respond& respond) const;
+    Sample sample(Tracer& tracer, std::uint32_t index);
+    Vec3 traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index, bool& hit) const;
+    Vec3 connected(Tracer& tracer, const Draws& draws, std::uint32_t index) const;
 
     const PathTracer& tracer_;
     const ReferenceSettings& settings_;
@@ -89,7 +97,6 @@ class TileSampler {
     const Surface* surface_ = nullptr;
     Vec3 toEye_{0.0f};
     LightReceiver receiver_;
-    SobolBlock diffusePoints_{{}, 0}, lobePoints_{{}, 0}, conePoints_{{}, 0};
     Draws diffuse_, lobe_, cone_;
     PoolWeights scratch_;
 };

@@ -14,7 +14,7 @@ std::size_t countUpTo(std::span<const T> values, T x)
     const T* from = values.data();
     for (std::size_t left = values.size(); left > 1;) {
         const std::size_t half = left / 2;
-        from += half * std::size_t(from[half - 1] <= x);
+        from += half & (0 - std::size_t(from[half - 1] <= x));
         left -= half;
     }
     return std::size_t(from - values.data()) + std::size_t(*from <= x);
