@@ -111,9 +111,8 @@ LightPoint LightDensity::draw(UnitPoint xi) const
     return grids_->pointIn(row * side + column, within);
 }
 
-float LightDensity::operator()(const LightPoint& point) const
+float LightDensity::inTexel(std::size_t texel) const
 {
-    const std::size_t texel = grids_->texelOf(point);
     return float(double(weights_[texel]) / rows_.back()) * grids_->perArea(texel);
 }
 

@@ -10,13 +10,6 @@ std::array<std::vector<float>*, 11> streamsOf(LightPool& pool)
     return {&pool.x, &pool.y, &pool.z, &pool.gx, &pool.gy, &pool.gz, &pool.nx, &pool.ny, &pool.nz, &pool.density, &pool.brightness};
 }
 
-void append(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, const Vec3& v)
-{
-    x.push_back(v.x);
-    y.push_back(v.y);
-    z.push_back(v.z);
-}
-
 /// A lit point on its way into the pool.
 struct Found {
     std::uint64_t order = 0;  ///< along the lights' squares, see hilbertIndex
@@ -60,10 +53,10 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     // The density is that of the point, not of the draw, so that both techniques know the same.
     const std::optional<LightCoordinates> at = map.coordinates(surface.position);
     if (!at) return std::nullopt;
-    const LightPoint point{drawn.light, at->at};
-    const auto perArea = float(double(guide.density(point)) * at->perArea * double(cosine));
+    const std::size_t texel = guide.density.grids().texelOf({drawn.light, at->at});
+    const auto perArea = float(double(guide.density.inTexel(texel)) * at->perArea * double(cosine));
     if (!(perArea > 0.0f) || !std::isfinite(perArea)) return std::nullopt;
-    const float reach = guide.reach.empty() ? 1.0f : guide.reach[guide.density.grids().texelOf(point)];
+    const float reach = guide.reach.empty() ? 1.0f : guide.reach[texel];
     const Vec3 diffuse = diffuseRadiance(surface, light);
     return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at),
                  {surface, perArea, reach * (diffuse.x + diffuse.y + diffuse.z), reach, glossy, diffuse, drawn.light, hit->surface, light}};
@@ -91,21 +84,36 @@ LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGui
     LightPool pool;
     pool.drawn = count;
     pool.transport = transport;
-    const std::size_t padded = (found.size() + kPoolLanes - 1) / kPoolLanes * kPoolLanes;
-    for (std::vector<float>* stream : streamsOf(pool)) stream->reserve(padded);
     pool.points.reserve(found.size());
     for (const auto& [along, i] : order) {
         const LightPool::Point& point = found[i].point;
-        append(pool.x, pool.y, pool.z, point.surface.position);
-        append(pool.gx, pool.gy, pool.gz, point.surface.geometricNormal);
-        append(pool.nx, pool.ny, pool.nz, point.surface.normal);
-        pool.density.push_back(point.density);
-        pool.brightness.push_back(point.brightness);
         if (point.glossy) pool.glossy.push_back(std::uint32_t(pool.points.size()));
         pool.points.push_back(point);
     }
-    for (std::vector<float>* stream : streamsOf(pool)) stream->resize(padded);
+    layOut(pool, 1);
     return pool;
+}
+
+void layOut(LightPool& pool, std::size_t subsets)
+{
+    pool.subsets = subsets;
+    const std::size_t slots = pool.slotsASubset();
+    for (std::vector<float>* stream : streamsOf(pool)) stream->assign(subsets * slots, 0.0f);
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const LightPool::Point& point = pool.points[i];
+        const Surface& surface = point.surface;
+        const std::size_t slot = i % subsets * slots + i / subsets;
+        const auto store = [slot](std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, const Vec3& v) {
+            x[slot] = v.x;
+            y[slot] = v.y;
+            z[slot] = v.z;
+        };
+        store(pool.x, pool.y, pool.z, surface.position);
+        store(pool.gx, pool.gy, pool.gz, surface.geometricNormal);
+        store(pool.nx, pool.ny, pool.nz, surface.normal);
+        pool.density[slot] = point.density;
+        pool.brightness[slot] = point.brightness;
+    }
 }
 
 }  // namespace lrsm

@@ -35,13 +35,14 @@ inline constexpr std::size_t kPoolLanes = 4;
 struct LightPool {
     std::size_t drawn = 0;  ///< N: with the rays that found nothing lit
 
-    // One entry a lit point. What weighing reads, an array a number, with zeros up to a multiple of kPoolLanes:
+    // What weighing reads, an array a number: the points of subset 0, those of subset 1 ..., each with zeros up to a multiple of kPoolLanes.
+    std::size_t subsets = 1;        ///< point i is of subset i % subsets: a receiver weighs one of them
     std::vector<float> x, y, z;     ///< position
     std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
     std::vector<float> nx, ny, nz;  ///< unit shading normal
     std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
     std::vector<float> brightness;  ///< sum of the diffuse radiance's channels, times `reach`
-    /// What is read of a point that has been chosen, side by side.
+    /// The rest, side by side for who has chosen a point.
     struct Point {
         Surface surface;
         float density = 0.0f, brightness = 0.0f;  ///< as above
@@ -61,12 +62,17 @@ struct LightPool {
     Transport transport = Transport::single;
 
     std::size_t size() const { return points.size(); }
+    std::size_t slotsASubset() const { return (subsetSize(0) + kPoolLanes - 1) / kPoolLanes * kPoolLanes; }
+    std::size_t subsetSize(std::size_t subset) const { return size() > subset ? (size() - subset - 1) / subsets + 1 : 0; }
     Vec3 position(std::size_t i) const { return points[i].surface.position; }
 };
 
 /// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.
 LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count,
                    Transport transport);
+
+/// Sets the arrays that weighing reads. drawPool leaves them as one subset.
+void layOut(LightPool& pool, std::size_t subsets);
 
 /// A shading normal turned away from who looks, or from its own triangle, depends on who looks (evaluateSurface): technique b leaves such points to a.
 bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toViewer);

@@ -45,7 +45,11 @@ void PoolWeights::weighDiffuse(const LightPool& pool, const LightReceiver& recei
         storeFloat4(weights_.data() + j, reinterpret_cast<Float4>(seen & reinterpret_cast<Int4>(weight)));
     }
     weights_.resize(pool.size());
-    for (const std::uint32_t j : pool.glossy) weights_[j] = poolWeight(pool, j, receiver, candidates, CosineResponse{receiver.normal});
+    for (const std::uint32_t j : pool.glossy) {
+        Vec3 direction;
+        const Vec3 answer = connection(pool, j, receiver, candidates, CosineResponse{receiver.normal}, direction);
+        weights_[j] = poolWeight(pool.points[j], answer, direction);
+    }
     sum(pool);
 }
 

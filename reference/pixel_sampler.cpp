@@ -59,6 +59,8 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     // Their own for the lobe, so that the variances of both parts add up.
     if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints, kPointsASampleBits);
     if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints, kFurtherPointsBits);
+    layOut(pools.lobe, kSpecularStride);
+    for (LightPool* pool : {&pools.furtherDiffuse, &pools.furtherLobe}) layOut(*pool, std::max<std::size_t>(1, pool->size() / kVertexCandidates));
     if (first != group << groupBits_) tracer.counts = before;
     return pools;
 }
@@ -107,7 +109,7 @@ void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_
     const float u = key_.points(pixel_, Purpose::lobeSubset).first(begin >> groupBits_ << groupBits_);
     const auto start = std::size_t(u * float(kSpecularStride));
     const LobeResponse response{*surface_, toEye_};
-    lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, response, start, kSpecularStride);
+    lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, response, start);
     connect(lobe_, Purpose::lobePool, begin, end, response);
     if (channels_ < kConeChannels) return;
     const Vec3 mirror = mirrorDirection(surface_->normal, toEye_);

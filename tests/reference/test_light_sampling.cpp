@@ -217,7 +217,7 @@ TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[refe
     double flux = 0.0;
     for (std::size_t i = 0; i < pool.size(); ++i)
         if (pool.points[i].hit.mesh == 2)
-            flux += double(pool.points[i].radianceTowards(Vec3(0.0f)).g) * 3.14159265358979 / 0.7 / double(pool.density[i]) / double(pool.drawn);
+            flux += double(pool.points[i].radianceTowards(Vec3(0.0f)).g) * 3.14159265358979 / 0.7 / double(pool.points[i].density) / double(pool.drawn);
     // Solid angle of the wall z = -1 from 1.3 m in front of it, as four right-angled corners atan(a b / (d sqrt(a^2 + b^2 + d^2))).
     double angle = 0.0;
     for (const double a : {0.8, 1.2})
