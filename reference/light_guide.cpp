@@ -3,8 +3,8 @@
 namespace lrsm {
 namespace {
 
-constexpr float kOwnShare = 0.7f;        // of what the tile and its neighbours have seen; the rest is `base`
-constexpr std::uint32_t kOwnWeight = 2;  // a tile's counts, against its neighbours' 1
+constexpr float kOwnShare = 0.7f;                        // of what the tile and its neighbours have seen; the rest is `base`
+constexpr std::uint32_t kOwnWeight = 2;                  // a tile's counts, against its neighbours' 1
 constexpr double kPriorTries = 16.0, kPriorReach = 0.5;  // what is taken for granted of a texel's visibility, in the tent's units
 
 /// Twice each of `count` values, and its neighbours on both sides.

@@ -52,10 +52,7 @@ struct LightPool {
         std::uint32_t light = 0;
         SurfaceHit hit;
         LightSample sample;  ///< of the light
-        Vec3 radianceTowards(const Vec3& toViewer) const
-        {
-            return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse;
-        }
+        Vec3 radianceTowards(const Vec3& toViewer) const { return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse; }
     };
     std::vector<Point> points;
     std::vector<std::uint32_t> glossy;  ///< which points are

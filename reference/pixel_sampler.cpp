@@ -139,8 +139,7 @@ Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
 
     // The mean over the cone: f and p_a are both 1 / its solid angle.
     const float coneDensity = 1.0f / (2.0f * kPi * (1.0f - cosHalf_));
-    store(sample, kCone,
-          traced(tracer, cone_.directions[index - begin_], {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
+    store(sample, kCone, traced(tracer, cone_.directions[index - begin_], {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
     return sample;
 }
 

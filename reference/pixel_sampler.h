@@ -61,7 +61,8 @@ class TileSampler {
         Vec3 direction{0.0f};
         Vec3 factor{0.0f};  ///< of the radiance that comes from there
     };
-    /// One layer's way to draw directions and from a pool: for all of a group's samples at once, so that the arithmetic of one need not wait for that of another.
+    /// One layer's way to draw directions and from a pool: for all of a group's samples at once, so that the arithmetic of one need not wait for that of
+    /// another.
     struct Draws {
         std::vector<Vec3> directions;  ///< one a sample
         const LightPool* pool = nullptr;

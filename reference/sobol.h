@@ -35,8 +35,8 @@ constexpr std::uint32_t scrambleReversed(std::uint32_t x, std::uint32_t seed)
     return x;
 }
 
-/// Sobol's second dimension, its bits reversed: bit k of the index stands for (1 + s)^k over GF(2), bit k of the result for s^k, so that the index is a polynomial
-/// and this is its shift by one. (p + s^n q)(s + 1) = (p + q)(s + 1) + s^n q(s + 1) for n a power of two: half by half, all at once.
+/// Sobol's second dimension, its bits reversed: bit k of the index stands for (1 + s)^k over GF(2), bit k of the result for s^k, so that the index is a
+/// polynomial and this is its shift by one. (p + s^n q)(s + 1) = (p + q)(s + 1) + s^n q(s + 1) for n a power of two: half by half, all at once.
 constexpr std::uint32_t secondReversed(std::uint32_t index)
 {
     index ^= index >> 16;
@@ -55,10 +55,7 @@ class SobolBlock {
     SobolBlock(const Philox4& seeds, int blockBits) : seeds_(seeds), shift_(32 - blockBits) {}
 
     /// Point `index` in [0, 2^m).
-    UnitPoint point(std::uint32_t index) const
-    {
-        return {first(index), unitFloat(reverseBits(scrambleReversed(secondReversed(scrambled(index)), seeds_[1])))};
-    }
+    UnitPoint point(std::uint32_t index) const { return {first(index), unitFloat(reverseBits(scrambleReversed(secondReversed(scrambled(index)), seeds_[1])))}; }
     /// Its first coordinate.
     float first(std::uint32_t index) const { return unitFloat(reverseBits(scrambleReversed(scrambled(index), seeds_[0]))); }
 
