@@ -78,17 +78,14 @@ Vec3 diffuseLight(Tracer& tracer, const PathStart& start, const RayHit& hit, con
     return radiance;
 }
 
-constexpr std::size_t kVertexCandidates = 16;  // at a further vertex: as many as cost less than the ray to the one that is taken
-
 /// Technique b at a vertex of a path: (sum of f L) of light that one of a pool's points sends.
 Vec3 drawnLight(Tracer& tracer, const Surface& surface, const Scattering& scattering, const PathLight& light, const Philox4& words)
 {
     if (!light.furtherPool || light.furtherPool->size() == 0) return Vec3(0.0f);
     const LightPool& pool = *light.furtherPool;
     const LightReceiver receiver = receiverAt(tracer, surface);
-    const std::size_t stride = std::max<std::size_t>(1, pool.size() / kVertexCandidates), first = std::size_t(unitFloat(words[0]) * float(stride));
     PoolWeights& weights = *light.scratch;
-    weights.weigh(pool, receiver, light.further.candidates, scattering, first, stride);
+    weights.weigh(pool, receiver, light.further.candidates, scattering, std::size_t(unitFloat(words[0]) * float(pool.subsets)));
     if (!weights.any()) return Vec3(0.0f);
 
     const Choice chosen = weights.choose(unitFloat(words[1]));

@@ -27,6 +27,9 @@ struct PathStart {
     float density = 0.0f;
 };
 
+/// In a subset of a pool for further vertices: as many as cost less than the ray to the one that is taken.
+inline constexpr std::size_t kVertexCandidates = 16;
+
 /// What is found from the lights' side beside a path's own rays.
 struct PathLight {
     LightTechnique first;    ///< that the first ray competes with: who draws the first ray draws from its pool, too

@@ -1,5 +1,7 @@
 #include "reference/light_density.h"
 
+#include "reference/search.h"
+
 #include <algorithm>
 #include <array>
 
@@ -32,8 +34,7 @@ std::vector<float> quantileCuts(std::size_t side, const std::array<std::uint64_t
 
 std::size_t intervalOf(const std::vector<float>& cuts, float x)
 {
-    const auto above = std::upper_bound(cuts.begin() + 1, cuts.end() - 1, x);
-    return std::size_t(above - cuts.begin()) - 1;
+    return countUpTo(std::span(cuts).subspan(1, cuts.size() - 2), x);
 }
 
 float pointBetween(float begin, float end, float fraction)
@@ -44,7 +45,7 @@ float pointBetween(float begin, float end, float fraction)
 /// The interval of ascending sums that x, in [0, last sum), falls into, and where.
 std::size_t invert(std::span<const double> sums, double x, float& fraction)
 {
-    const std::size_t at = std::min(std::size_t(std::upper_bound(sums.begin(), sums.end(), x) - sums.begin()), sums.size() - 1);
+    const std::size_t at = std::min(countUpTo(sums, x), sums.size() - 1);
     const double below = at > 0 ? sums[at - 1] : 0.0, width = sums[at] - below;
     fraction = width > 0.0 ? std::clamp(float((x - below) / width), 0.0f, kBelowOne) : 0.0f;
     return at;
@@ -110,9 +111,8 @@ LightPoint LightDensity::draw(UnitPoint xi) const
     return grids_->pointIn(row * side + column, within);
 }
 
-float LightDensity::operator()(const LightPoint& point) const
+float LightDensity::inTexel(std::size_t texel) const
 {
-    const std::size_t texel = grids_->texelOf(point);
     return float(double(weights_[texel]) / rows_.back()) * grids_->perArea(texel);
 }
 

@@ -53,7 +53,8 @@ class LightDensity {
     const LightGrids& grids() const { return *grids_; }
     LightPoint draw(UnitPoint xi) const;
     /// Per unit of the square's area; the integral over all squares is 1.
-    float operator()(const LightPoint& point) const;
+    float operator()(const LightPoint& point) const { return inTexel(grids_->texelOf(point)); }
+    float inTexel(std::size_t texel) const;
 
   private:
     std::shared_ptr<const LightGrids> grids_;

@@ -3,10 +3,20 @@
 namespace lrsm {
 namespace {
 
-constexpr float kOwnShare = 0.7f;        // of what the tile and its neighbours have seen; the rest is `base`
-constexpr std::uint32_t kOwnWeight = 2;  // a tile's counts, against its neighbours' 1
-constexpr std::uint32_t kTent[3] = {1, 2, 1};
+constexpr float kOwnShare = 0.7f;                        // of what the tile and its neighbours have seen; the rest is `base`
+constexpr std::uint32_t kOwnWeight = 2;                  // a tile's counts, against its neighbours' 1
 constexpr double kPriorTries = 16.0, kPriorReach = 0.5;  // what is taken for granted of a texel's visibility, in the tent's units
+
+/// Twice each of `count` values, and its neighbours on both sides.
+void spreadLine(std::uint32_t* values, std::size_t count, std::size_t stride)
+{
+    std::uint32_t before = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t here = values[i * stride];
+        values[i * stride] = before + 2 * here + (i + 1 < count ? values[(i + 1) * stride] : 0);
+        before = here;
+    }
+}
 
 }  // namespace
 
@@ -14,14 +24,17 @@ SpreadCounts::SpreadCounts(const LightGrids& grids) : side(grids.side()), light(
 
 void SpreadCounts::add(const TexelCount& count, std::uint32_t weight)
 {
-    const std::size_t column = count.texel % side, row = count.texel / side % side, square = count.texel / (side * side) * side * side;
-    for (std::size_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 1, side - 1); ++r)
-        for (std::size_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 1, side - 1); ++c) {
-            const std::uint32_t tent = weight * kTent[r + 1 - row] * kTent[c + 1 - column];
-            const std::size_t at = square + r * side + c;
-            light[at] += tent * count.light;
-            tried[at] += tent * count.tried;
-            reached[at] += tent * count.reached;
+    light[count.texel] += weight * count.light;
+    tried[count.texel] += weight * count.tried;
+    reached[count.texel] += weight * count.reached;
+}
+
+void SpreadCounts::spread()
+{
+    for (std::vector<std::uint32_t>* counts : {&light, &tried, &reached})
+        for (std::size_t square = 0; square < counts->size(); square += side * side) {
+            for (std::size_t row = 0; row < side; ++row) spreadLine(counts->data() + square + row * side, side, 1);
+            for (std::size_t column = 0; column < side; ++column) spreadLine(counts->data() + square + column, side, side);
         }
 }
 
@@ -41,6 +54,7 @@ TileGuide LightGuide::guideFor(std::size_t tile) const
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, tiles.rows() - 1); ++ny)
         for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, columns - 1); ++nx)
             for (const TexelCount& one : seen[std::size_t(ny * columns + nx)]) counts.add(one, nx == x && ny == y ? kOwnWeight : 1);
+    counts.spread();
 
     std::vector<float> weights = base, reach(base.size());
     const auto total = double(counts.totalLight());

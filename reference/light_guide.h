@@ -25,10 +25,12 @@ struct TileGuide {
     std::vector<float> reach;  ///< [texel]: how likely a point there is to be seen, > 0
 };
 
-/// Counts of all texels, each spread over its neighbours by a tent of 3 x 3.
+/// Counts of all texels.
 struct SpreadCounts {
     explicit SpreadCounts(const LightGrids& grids);
     void add(const TexelCount& count, std::uint32_t weight);
+    /// Spreads what has been added over each texel's neighbours, by a tent of 3 x 3.
+    void spread();
     std::uint64_t totalLight() const;
 
     std::size_t side;

@@ -85,7 +85,7 @@ class Pilot {
                 if (!weights.any()) return;
                 const SobolBlock choices = points(pixel, Purpose::pilotChoice, rayBits_);
                 for (std::uint32_t i = 0; i < (1u << rayBits_); ++i) {
-                    const std::size_t chosen = weights.choose(choices.point(i).u).index;
+                    const std::size_t chosen = weights.choose(choices.first(i)).index;
                     const Vec3 direction = glm::normalize(pool.position(chosen) - receiver.origin);
                     const bool reached = radianceFrom(tracer, pool, chosen, receiver, direction) != Vec3(0.0f);
                     const std::optional<LightCoordinates> at = guide_.maps[pool.points[chosen].light].coordinates(pool.position(chosen));
@@ -153,18 +153,15 @@ class Pilot {
 
 std::vector<TexelCount> countTexels(const LightGrids& grids, std::span<const Finding> findings)
 {
-    std::vector<TexelCount> each;
-    each.reserve(findings.size());
-    for (const Finding& one : findings) each.push_back({std::uint32_t(grids.texelOf(one.point)), one.light, one.tried, one.reached});
-    std::sort(each.begin(), each.end(), [](const TexelCount& a, const TexelCount& b) { return a.texel < b.texel; });
-    std::vector<TexelCount> counts;
-    for (const TexelCount& one : each) {
-        if (counts.empty() || counts.back().texel != one.texel) counts.push_back({one.texel, 0, 0, 0});
-        counts.back().light += one.light;
-        counts.back().tried += one.tried;
-        counts.back().reached += one.reached;
+    std::vector<TexelCount> counts(grids.texels());
+    for (std::uint32_t texel = 0; texel < counts.size(); ++texel) counts[texel].texel = texel;
+    for (const Finding& one : findings) {
+        TexelCount& count = counts[grids.texelOf(one.point)];
+        count.light += one.light;
+        count.tried += one.tried;
+        count.reached += one.reached;
     }
-    return counts;
+    return {counts.begin(), std::remove_if(counts.begin(), counts.end(), [](const TexelCount& count) { return count.light == 0 && count.tried == 0; })};
 }
 
 /// Whole numbers in proportion to what each ray has brought, so that sums do not depend on their order.
@@ -187,6 +184,7 @@ std::vector<float> baseWeights(const LightGrids& grids, std::span<const Finding>
 {
     SpreadCounts counts(grids);
     for (const TexelCount& one : countTexels(grids, points)) counts.add(one, 1);
+    counts.spread();
     const auto total = double(counts.totalLight());
     if (total == 0.0) return {};
     std::vector<float> weights(grids.texels());

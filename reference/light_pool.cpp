@@ -5,24 +5,14 @@
 namespace lrsm {
 namespace {
 
-void append(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, const Vec3& v)
+std::array<std::vector<float>*, 11> streamsOf(LightPool& pool)
 {
-    x.push_back(v.x);
-    y.push_back(v.y);
-    z.push_back(v.z);
-}
-
-void reserve(LightPool& pool, std::size_t count)
-{
-    for (std::vector<float>* stream : {&pool.x, &pool.y, &pool.z, &pool.gx, &pool.gy, &pool.gz, &pool.nx, &pool.ny, &pool.nz, &pool.density, &pool.brightness})
-        stream->reserve(count);
-    pool.points.reserve(count);
+    return {&pool.x, &pool.y, &pool.z, &pool.gx, &pool.gy, &pool.gz, &pool.nx, &pool.ny, &pool.nz, &pool.density, &pool.brightness};
 }
 
 /// A lit point on its way into the pool.
 struct Found {
     std::uint64_t order = 0;  ///< along the lights' squares, see hilbertIndex
-    float density = 0.0f;
     LightPool::Point point;
 };
 
@@ -32,16 +22,12 @@ std::uint32_t hilbertIndex(UnitPoint at)
 {
     constexpr int bits = 16;
     auto x = std::uint32_t(at.u * float(1 << bits)), y = std::uint32_t(at.v * float(1 << bits)), index = 0u;
-    for (std::uint32_t half = 1u << (bits - 1); half > 0; half >>= 1) {
-        const bool right = x & half, up = y & half;
-        index = index << 2 | (right ? 3u ^ std::uint32_t(up) : std::uint32_t(up));
-        if (!up) {
-            if (right) {
-                x = ~x;
-                y = ~y;
-            }
-            std::swap(x, y);
-        }
+    for (int level = bits - 1; level >= 0; --level) {  // without branches: they would be guessed wrong
+        const std::uint32_t right = x >> level & 1u, up = y >> level & 1u;
+        index = index << 2 | (3u * right ^ up);
+        const std::uint32_t turned = 0u - (right & (up ^ 1u)), swapped = (x ^ y) & (up - 1u);
+        x ^= swapped ^ turned;
+        y ^= swapped ^ turned;
     }
     return index;
 }
@@ -67,11 +53,13 @@ std::optional<Found> follow(Tracer& tracer, std::span<const LightMap> maps, cons
     // The density is that of the point, not of the draw, so that both techniques know the same.
     const std::optional<LightCoordinates> at = map.coordinates(surface.position);
     if (!at) return std::nullopt;
-    const LightPoint point{drawn.light, at->at};
-    const auto perArea = float(double(guide.density(point)) * at->perArea * double(cosine));
+    const std::size_t texel = guide.density.grids().texelOf({drawn.light, at->at});
+    const auto perArea = float(double(guide.density.inTexel(texel)) * at->perArea * double(cosine));
     if (!(perArea > 0.0f) || !std::isfinite(perArea)) return std::nullopt;
-    const float reach = guide.reach.empty() ? 1.0f : guide.reach[guide.density.grids().texelOf(point)];
-    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at), perArea, {hit->surface, surface, light, drawn.light, reach, glossy}};
+    const float reach = guide.reach.empty() ? 1.0f : guide.reach[texel];
+    const Vec3 diffuse = diffuseRadiance(surface, light);
+    return Found{std::uint64_t(drawn.light) << 32 | hilbertIndex(at->at),
+                 {surface, perArea, reach * (diffuse.x + diffuse.y + diffuse.z), reach, glossy, diffuse, drawn.light, hit->surface, light}};
 }
 
 }  // namespace
@@ -89,24 +77,43 @@ LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGui
     for (std::uint32_t i = first; i < first + count; ++i)
         if (std::optional<Found> one = follow(tracer, maps, guide, guide.density.draw(points.point(i)), transport)) found.push_back(*one);
     // Neighbours side by side: draws that are stratified along the pool are stratified over what is lit.
-    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.order < b.order; });
+    std::vector<std::pair<std::uint64_t, std::size_t>> order(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) order[i] = {found[i].order, i};
+    std::sort(order.begin(), order.end());
 
     LightPool pool;
     pool.drawn = count;
     pool.transport = transport;
-    reserve(pool, found.size());
-    for (const Found& one : found) {
-        const LightPool::Point& point = one.point;
-        append(pool.x, pool.y, pool.z, point.surface.position);
-        append(pool.gx, pool.gy, pool.gz, point.surface.geometricNormal);
-        append(pool.nx, pool.ny, pool.nz, point.surface.normal);
-        pool.density.push_back(one.density);
-        const Vec3 diffuse = diffuseRadiance(point.surface, point.sample);
-        pool.brightness.push_back(point.reach * (diffuse.x + diffuse.y + diffuse.z));
+    pool.points.reserve(found.size());
+    for (const auto& [along, i] : order) {
+        const LightPool::Point& point = found[i].point;
         if (point.glossy) pool.glossy.push_back(std::uint32_t(pool.points.size()));
-        pool.points.push_back(one.point);
+        pool.points.push_back(point);
     }
+    layOut(pool, 1);
     return pool;
+}
+
+void layOut(LightPool& pool, std::size_t subsets)
+{
+    pool.subsets = subsets;
+    const std::size_t slots = pool.slotsASubset();
+    for (std::vector<float>* stream : streamsOf(pool)) stream->assign(subsets * slots, 0.0f);
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const LightPool::Point& point = pool.points[i];
+        const Surface& surface = point.surface;
+        const std::size_t slot = i % subsets * slots + i / subsets;
+        const auto store = [slot](std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, const Vec3& v) {
+            x[slot] = v.x;
+            y[slot] = v.y;
+            z[slot] = v.z;
+        };
+        store(pool.x, pool.y, pool.z, surface.position);
+        store(pool.gx, pool.gy, pool.gz, surface.geometricNormal);
+        store(pool.nx, pool.ny, pool.nz, surface.normal);
+        pool.density[slot] = point.density;
+        pool.brightness[slot] = point.brightness;
+    }
 }
 
 }  // namespace lrsm

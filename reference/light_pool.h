@@ -30,40 +30,46 @@
 /// come.
 namespace lrsm {
 
+inline constexpr std::size_t kPoolLanes = 4;
+
 struct LightPool {
     std::size_t drawn = 0;  ///< N: with the rays that found nothing lit
 
-    // One entry a lit point. What weighing reads, an array a number:
+    // What weighing reads, an array a number: the points of subset 0, those of subset 1 ..., each with zeros up to a multiple of kPoolLanes.
+    std::size_t subsets = 1;        ///< point i is of subset i % subsets: a receiver weighs one of them
     std::vector<float> x, y, z;     ///< position
     std::vector<float> gx, gy, gz;  ///< unit geometric normal, on the lit side
     std::vector<float> nx, ny, nz;  ///< unit shading normal
     std::vector<float> density;     ///< q |d(u, v) / dA| <n.l>: over the surface, 1/m^2
     std::vector<float> brightness;  ///< sum of the diffuse radiance's channels, times `reach`
+    /// The rest, side by side for who has chosen a point.
     struct Point {
-        SurfaceHit hit;
         Surface surface;
-        LightSample sample;  ///< of the light
+        float density = 0.0f, brightness = 0.0f;  ///< as above
+        float reach = 1.0f;                       ///< how likely the point is to be seen
+        bool glossy = false;                      ///< its specular reflection counts, too
+        Vec3 diffuse{0.0f};                       ///< its diffuse radiance
         std::uint32_t light = 0;
-        float reach = 1.0f;   ///< how likely the point is to be seen
-        bool glossy = false;  ///< its specular reflection counts, too
-        Vec3 radianceTowards(const Vec3& toViewer) const
-        {
-            const Vec3 diffuse = diffuseRadiance(surface, sample);
-            return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse;
-        }
+        SurfaceHit hit;
+        LightSample sample;  ///< of the light
+        Vec3 radianceTowards(const Vec3& toViewer) const { return glossy ? diffuse + specularRadiance(surface, sample, toViewer) : diffuse; }
     };
     std::vector<Point> points;
     std::vector<std::uint32_t> glossy;  ///< which points are
     Transport transport = Transport::single;
 
     std::size_t size() const { return points.size(); }
-    Vec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }
-    Vec3 geometricNormal(std::size_t i) const { return {gx[i], gy[i], gz[i]}; }
+    std::size_t slotsASubset() const { return (subsetSize(0) + kPoolLanes - 1) / kPoolLanes * kPoolLanes; }
+    std::size_t subsetSize(std::size_t subset) const { return size() > subset ? (size() - subset - 1) / subsets + 1 : 0; }
+    Vec3 position(std::size_t i) const { return points[i].surface.position; }
 };
 
 /// N = `count` points of the lights' squares, `first` .. first + count - 1 of `points`, to what they strike.
 LightPool drawPool(Tracer& tracer, std::span<const LightMap> maps, const TileGuide& guide, const SobolBlock& points, std::uint32_t first, std::uint32_t count,
                    Transport transport);
+
+/// Sets the arrays that weighing reads. drawPool leaves them as one subset.
+void layOut(LightPool& pool, std::size_t subsets);
 
 /// A shading normal turned away from who looks, or from its own triangle, depends on who looks (evaluateSurface): technique b leaves such points to a.
 bool seenAlike(const Vec3& geometricNormal, const Vec3& normal, const Vec3& toViewer);

@@ -1,5 +1,8 @@
 #include "reference/light_technique.h"
 
+#include "core/base/simd.h"
+#include "reference/search.h"
+
 #include <algorithm>
 
 namespace lrsm {
@@ -25,22 +28,28 @@ void PoolWeights::weighDiffuse(const LightPool& pool, const LightReceiver& recei
 {
     first_ = 0;
     stride_ = 1;
-    weights_.resize(pool.size());
+    weights_.resize(pool.x.size());
     const Vec3 o = receiver.origin, n = receiver.normal, g = receiver.geometricNormal;
     // The lengths of the way, d, stay in the products: no root is needed. X = d <n.w>, Y = d <n_y.-w>.
-    for (std::size_t j = 0; j < pool.size(); ++j) {
-        const float dx = pool.x[j] - o.x, dy = pool.y[j] - o.y, dz = pool.z[j] - o.z;
-        const float distance2 = dx * dx + dy * dy + dz * dz;
-        const float arriving = n.x * dx + n.y * dy + n.z * dz, above = g.x * dx + g.y * dy + g.z * dz;
-        const float leaving = -(pool.gx[j] * dx + pool.gy[j] * dy + pool.gz[j] * dz);
-        const float shading = -(pool.nx[j] * dx + pool.ny[j] * dy + pool.nz[j] * dz);
-        const float product = arriving * leaving;
-        const float weight = pool.brightness[j] * candidates * product / (product / kPi + candidates * pool.density[j] * distance2 * distance2);
-        const bool seen = (arriving > 0.0f) & (above > 0.0f) & (leaving > 0.0f) & (shading > 0.0f) &
+    for (std::size_t j = 0; j < pool.x.size(); j += kPoolLanes) {
+        const auto at = [j](const std::vector<float>& stream) { return loadFloat4(stream.data() + j); };
+        const Float4 dx = at(pool.x) - o.x, dy = at(pool.y) - o.y, dz = at(pool.z) - o.z;
+        const Float4 distance2 = dx * dx + dy * dy + dz * dz;
+        const Float4 arriving = n.x * dx + n.y * dy + n.z * dz, above = g.x * dx + g.y * dy + g.z * dz;
+        const Float4 leaving = -(at(pool.gx) * dx + at(pool.gy) * dy + at(pool.gz) * dz);
+        const Float4 shading = -(at(pool.nx) * dx + at(pool.ny) * dy + at(pool.nz) * dz);
+        const Float4 product = arriving * leaving;
+        const Float4 weight = at(pool.brightness) * candidates * product / (product / kPi + candidates * at(pool.density) * distance2 * distance2);
+        const Int4 seen = (arriving > 0.0f) & (above > 0.0f) & (leaving > 0.0f) & (shading > 0.0f) &
                           (shading * shading >= kLeastFacing * kLeastFacing * distance2) & (weight > 0.0f);
-        weights_[j] = seen ? weight : 0.0f;
+        storeFloat4(weights_.data() + j, reinterpret_cast<Float4>(seen & reinterpret_cast<Int4>(weight)));
     }
-    for (const std::uint32_t j : pool.glossy) weights_[j] = poolWeight(pool, j, receiver, candidates, CosineResponse{receiver.normal});
+    weights_.resize(pool.size());
+    for (const std::uint32_t j : pool.glossy) {
+        Vec3 direction;
+        const Vec3 answer = connection(pool, j, receiver, candidates, CosineResponse{receiver.normal}, direction);
+        weights_[j] = poolWeight(pool.points[j], answer, direction);
+    }
     sum(pool);
 }
 
@@ -55,16 +64,15 @@ void PoolWeights::sum(const LightPool& pool)
 
 Choice PoolWeights::choose(float u) const
 {
-    const auto above = std::upper_bound(sums_.begin(), sums_.end(), double(u) * sums_.back());
-    const std::size_t i = std::min(std::size_t(above - sums_.begin()), sums_.size() - 1);
+    const std::size_t i = std::min(countUpTo(std::span<const double>(sums_), double(u) * sums_.back()), sums_.size() - 1);
     return {first_ + stride_ * i, float(double(stride_) * sums_.back() / (drawn_ * double(weights_[i])))};
 }
 
 Vec3 radianceFrom(Tracer& tracer, const LightPool& pool, std::size_t j, const LightReceiver& receiver, const Vec3& direction)
 {
     const LightPool::Point& point = pool.points[j];
-    const Vec3 way = pool.position(j) - receiver.origin, normal = pool.geometricNormal(j);
-    const float distance = glm::length(way), offset = kCoincidence * tracer.offset(pool.position(j)), leaving = -glm::dot(normal, direction);
+    const Vec3 position = point.surface.position, way = position - receiver.origin;
+    const float distance = glm::length(way), offset = kCoincidence * tracer.offset(position), leaving = -glm::dot(point.surface.geometricNormal, direction);
     const Ray ray{receiver.origin, direction, 0.0f, distance + offset / leaving, RayKind::bounce};
     const std::optional<RayHit> hit = tracer.closestHit(ray);
     if (!hit) return Vec3(0.0f);

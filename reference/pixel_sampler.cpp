@@ -59,33 +59,61 @@ GroupPools TileSampler::drawPools(Tracer& tracer, std::uint32_t first) const
     // Their own for the lobe, so that the variances of both parts add up.
     if (specular_) pools.lobe = draw(guide_, Purpose::lobePoints, kPointsASampleBits);
     if (specular_) pools.furtherLobe = draw(tracer_.guide().further, Purpose::furtherLobePoints, kFurtherPointsBits);
+    layOut(pools.lobe, kSpecularStride);
+    for (LightPool* pool : {&pools.furtherDiffuse, &pools.furtherLobe}) layOut(*pool, std::max<std::size_t>(1, pool->size() / kVertexCandidates));
     if (first != group << groupBits_) tracer.counts = before;
     return pools;
 }
 
-void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group)
+template <class Direct>
+void TileSampler::aim(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Direct& direct) const
+{
+    const SobolBlock points = key_.points(pixel_, purpose);
+    draws.directions.resize(end - begin);
+    for (std::uint32_t i = begin; i < end; ++i) draws.directions[i - begin] = direct(points.point(i));
+}
+
+template <class Respond>
+void TileSampler::connect(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Respond& respond) const
+{
+    draws.connections.clear();
+    if (!draws.weights.any()) return;
+    const SobolBlock points = key_.points(pixel_, purpose, kDrawBits);
+    draws.connections.resize((end - begin) << kDrawBits);
+    for (std::uint32_t i = 0; i < draws.connections.size(); ++i) {
+        const Choice chosen = draws.weights.choose(points.first((begin << kDrawBits) + i));
+        Connection& one = draws.connections[i];
+        one.index = chosen.index;
+        one.factor = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, one.direction) * chosen.overDensity;
+    }
+}
+
+void TileSampler::beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t begin, std::uint32_t end)
 {
     const PrimaryHits& primary = tracer_.primary();
     pixel_ = std::uint32_t(pixel);
+    begin_ = begin;
     surface_ = &primary.surface.texels[pixel];
     toEye_ = primary.toEye.texels[pixel];
     receiver_ = receiverAt(tracer, *surface_);
-    diffusePoints_ = key_.points(pixel_, Purpose::diffuseDirection);
+    aim(diffuse_, Purpose::diffuseDirection, begin, end, [&](UnitPoint xi) { return cosineDirection(surface_->normal, xi); });
     diffuse_.pool = &pools.diffuse;
-    diffuse_.choices = key_.points(pixel_, Purpose::diffusePool, kDrawBits);
     diffuse_.light.furtherPool = pools.furtherDiffuse.size() > 0 ? &pools.furtherDiffuse : nullptr;
     diffuse_.weights.weighDiffuse(pools.diffuse, receiver_, kPoolCandidates);
+    connect(diffuse_, Purpose::diffusePool, begin, end, CosineResponse{surface_->normal});
     if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return;
 
-    lobePoints_ = key_.points(pixel_, Purpose::lobeDirection);
+    aim(lobe_, Purpose::lobeDirection, begin, end, [&](UnitPoint xi) { return lobeDirection(*surface_, toEye_, xi); });
     lobe_.pool = &pools.lobe;
-    lobe_.choices = key_.points(pixel_, Purpose::lobePool, kDrawBits);
     lobe_.light.furtherPool = cone_.light.furtherPool = pools.furtherLobe.size() > 0 ? &pools.furtherLobe : nullptr;
-    const float u = key_.points(pixel_, Purpose::lobeSubset).point(group << groupBits_).u;
+    const float u = key_.points(pixel_, Purpose::lobeSubset).first(begin >> groupBits_ << groupBits_);
     const auto start = std::size_t(u * float(kSpecularStride));
-    lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, LobeResponse{*surface_, toEye_}, start, kSpecularStride);
+    const LobeResponse response{*surface_, toEye_};
+    lobe_.weights.weigh(pools.lobe, receiver_, kPoolCandidates, response, start);
+    connect(lobe_, Purpose::lobePool, begin, end, response);
     if (channels_ < kConeChannels) return;
-    conePoints_ = key_.points(pixel_, Purpose::coneDirection);
+    const Vec3 mirror = mirrorDirection(surface_->normal, toEye_);
+    aim(cone_, Purpose::coneDirection, begin, end, [&](UnitPoint xi) { return coneDirection(mirror, cosHalf_, xi); });
 }
 
 Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
@@ -96,25 +124,22 @@ Sample TileSampler::sample(Tracer& tracer, std::uint32_t index)
     Sample sample{};
     bool hit = false;
     const CosineResponse cosine{surface_->normal};
-    const Vec3 diffuseDirection = cosineDirection(surface_->normal, diffusePoints_.point(index));
+    const Vec3 diffuseDirection = diffuse_.directions[index - begin_];
     store(sample, kIrradiance,
-          traced(tracer, diffuseDirection, cosine(diffuseDirection), diffuse_.light, Purpose::diffusePath, index, hit) +
-              connected(tracer, diffuse_, index, cosine));
+          traced(tracer, diffuseDirection, cosine(diffuseDirection), diffuse_.light, Purpose::diffusePath, index, hit) + connected(tracer, diffuse_, index));
     sample[kOpacity] = hit ? 1.0f : 0.0f;
     if (channels_ == kDiffuseChannels || surface_->specularColor == Vec3(0.0f)) return sample;
 
-    const LobeResponse lobe{*surface_, toEye_};
-    const Vec3 lobeDrawn = lobeDirection(*surface_, toEye_, lobePoints_.point(index));
-    const Response reflected = lobe(lobeDrawn);
-    Vec3 value = connected(tracer, lobe_, index, lobe);
+    const Vec3 lobeDrawn = lobe_.directions[index - begin_];
+    const Response reflected = LobeResponse{*surface_, toEye_}(lobeDrawn);
+    Vec3 value = connected(tracer, lobe_, index);
     if (reflected.value != Vec3(0.0f)) value += traced(tracer, lobeDrawn, reflected, lobe_.light, Purpose::lobePath, index, hit);
     store(sample, kLobe, value);
     if (channels_ < kConeChannels) return sample;
 
     // The mean over the cone: f and p_a are both 1 / its solid angle.
     const float coneDensity = 1.0f / (2.0f * kPi * (1.0f - cosHalf_));
-    const Vec3 inCone = coneDirection(mirrorDirection(surface_->normal, toEye_), cosHalf_, conePoints_.point(index));
-    store(sample, kCone, traced(tracer, inCone, {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
+    store(sample, kCone, traced(tracer, cone_.directions[index - begin_], {Vec3(coneDensity), coneDensity}, cone_.light, Purpose::conePath, index, hit));
     return sample;
 }
 
@@ -130,18 +155,13 @@ Vec3 TileSampler::traced(Tracer& tracer, const Vec3& direction, const Response& 
     return response.density > 0.0f ? response.value / response.density * radiance : Vec3(0.0f);
 }
 
-/// Technique b: one of the pool's points.
-template <class Respond>
-Vec3 TileSampler::connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const
+/// Technique b: some of the pool's points.
+Vec3 TileSampler::connected(Tracer& tracer, const Draws& draws, std::uint32_t index) const
 {
-    if (!draws.weights.any()) return Vec3(0.0f);
+    if (draws.connections.empty()) return Vec3(0.0f);
     Vec3 sum(0.0f);
-    for (std::uint32_t draw = 0; draw < 1u << kDrawBits; ++draw) {
-        const Choice chosen = draws.weights.choose(draws.choices.point(index << kDrawBits | draw).u);
-        Vec3 direction;
-        const Vec3 response = connection(*draws.pool, chosen.index, receiver_, kPoolCandidates, respond, direction);
-        if (response != Vec3(0.0f)) sum += response * chosen.overDensity * radianceFrom(tracer, *draws.pool, chosen.index, receiver_, direction);
-    }
+    for (const Connection& one : std::span(draws.connections).subspan((index - begin_) << kDrawBits, 1u << kDrawBits))
+        if (one.factor != Vec3(0.0f)) sum += one.factor * radianceFrom(tracer, *draws.pool, one.index, receiver_, one.direction);
     return sum / float(1u << kDrawBits);
 }
 

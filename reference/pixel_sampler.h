@@ -48,29 +48,41 @@ class TileSampler {
             const GroupPools pools = drawPools(tracer, begin);
             forEachPixel(tracer_.guide().tiles, tile_, [&](std::size_t pixel, std::size_t number) {
                 if (!tracer_.primary().covered.texels[pixel]) return;
-                beginPixel(tracer, pools, pixel, begin / size);
+                beginPixel(tracer, pools, pixel, begin, end);
                 for (std::uint32_t index = begin; index < end; ++index) visit(pixel, number, sample(tracer, index));
             });
         }
     }
 
   private:
-    /// One layer's way to draw from a pool.
+    /// A point of a pool on the way to a sample.
+    struct Connection {
+        std::size_t index = 0;
+        Vec3 direction{0.0f};
+        Vec3 factor{0.0f};  ///< of the radiance that comes from there
+    };
+    /// One layer's way to draw directions and from a pool: for all of a group's samples at once, so that the arithmetic of one need not wait for that of
+    /// another.
     struct Draws {
+        std::vector<Vec3> directions;  ///< one a sample
         const LightPool* pool = nullptr;
         PoolWeights weights;
-        SobolBlock choices{{}, 0};
+        std::vector<Connection> connections;  ///< 2^kDrawBits a sample; empty: no light comes from the pool
         PathLight light;
     };
 
     /// The pools of the group that sample `first` is of. Their rays are counted with the group's first sample alone: ranges that cut a group count them once.
     GroupPools drawPools(Tracer& tracer, std::uint32_t first) const;
-    void beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t group);
-    Sample sample(Tracer& tracer, std::uint32_t index);
-    void addSpecular(Tracer& tracer, std::uint32_t index, Sample& sample);
-    Vec3 traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index, bool& hit) const;
+    /// For samples [begin, end), which are of one group.
+    void beginPixel(Tracer& tracer, const GroupPools& pools, std::size_t pixel, std::uint32_t begin, std::uint32_t end);
+    /// \param direct  UnitPoint to Vec3
+    template <class Direct>
+    void aim(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Direct& direct) const;
     template <class Respond>
-    Vec3 connected(Tracer& tracer, const Draws& draws, std::uint32_t index, const Respond& respond) const;
+    void connect(Draws& draws, Purpose purpose, std::uint32_t begin, std::uint32_t end, const Respond& respond) const;
+    Sample sample(Tracer& tracer, std::uint32_t index);
+    Vec3 traced(Tracer& tracer, const Vec3& direction, const Response& response, const PathLight& light, Purpose purpose, std::uint32_t index, bool& hit) const;
+    Vec3 connected(Tracer& tracer, const Draws& draws, std::uint32_t index) const;
 
     const PathTracer& tracer_;
     const ReferenceSettings& settings_;
@@ -82,11 +94,10 @@ class TileSampler {
     TileGuide guide_;
 
     // Of the pixel at hand
-    std::uint32_t pixel_ = 0;
+    std::uint32_t pixel_ = 0, begin_ = 0;
     const Surface* surface_ = nullptr;
     Vec3 toEye_{0.0f};
     LightReceiver receiver_;
-    SobolBlock diffusePoints_{{}, 0}, lobePoints_{{}, 0}, conePoints_{{}, 0};
     Draws diffuse_, lobe_, cone_;
     PoolWeights scratch_;
 };

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSampleScale = 0x1p48;
 constexpr double kSquareScale = 0x1p60;
+constexpr double kExactIn64Bits = 0x1p62;
 constexpr double kLargestSample = 0x1p24;  // its square, scaled, is 2^108: 2^19 such blocks fit a sum
 
 std::string describe(const SampleRange& range)
@@ -80,6 +81,8 @@ Int128 toFixed(double value, SampleFaults& faults)
         ++faults.notFinite;
         return 0;
     }
+    const double scaled = value * kSampleScale;
+    if (std::abs(scaled) < kExactIn64Bits) return static_cast<std::int64_t>(std::nearbyint(scaled));  // a 128-bit conversion is a call
     if (std::abs(value) > kLargestSample) ++faults.clamped;
     return static_cast<Int128>(std::nearbyint(std::clamp(value, -kLargestSample, kLargestSample) * kSampleScale));
 }

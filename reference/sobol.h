@@ -17,8 +17,7 @@ struct UnitPoint {
 
 constexpr std::uint32_t reverseBits(std::uint32_t x)
 {
-    x = (x >> 16) | (x << 16);
-    x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+    x = __builtin_bswap32(x);
     x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
     x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
     return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
@@ -26,15 +25,25 @@ constexpr std::uint32_t reverseBits(std::uint32_t x)
 
 /// Nested uniform scrambling by hash (Laine and Karras 2011; Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020): a
 /// multiplication by an even number carries only upwards, so with the bits reversed each bit is flipped by a hash of those above it.
-constexpr std::uint32_t owenScramble(std::uint32_t x, std::uint32_t seed)
+constexpr std::uint32_t scrambleReversed(std::uint32_t x, std::uint32_t seed)
 {
-    x = reverseBits(x);
     x += seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
-    return reverseBits(x);
+    return x;
+}
+
+/// Sobol's second dimension, its bits reversed: bit k of the index stands for (1 + s)^k over GF(2), bit k of the result for s^k, so that the index is a
+/// polynomial and this is its shift by one. (p + s^n q)(s + 1) = (p + q)(s + 1) + s^n q(s + 1) for n a power of two: half by half, all at once.
+constexpr std::uint32_t secondReversed(std::uint32_t index)
+{
+    index ^= index >> 16;
+    index ^= (index & 0xff00ff00u) >> 8;
+    index ^= (index & 0xf0f0f0f0u) >> 4;
+    index ^= (index & 0xccccccccu) >> 2;
+    return index ^ (index & 0xaaaaaaaau) >> 1;
 }
 
 /// Two dimensions of one block. Blocks with different seeds are independent, also where they are used side by side for more than two
@@ -46,16 +55,16 @@ class SobolBlock {
     SobolBlock(const Philox4& seeds, int blockBits) : seeds_(seeds), shift_(32 - blockBits) {}
 
     /// Point `index` in [0, 2^m).
-    UnitPoint point(std::uint32_t index) const
-    {
-        if (shift_ < 32) index = owenScramble(index << shift_, seeds_[2]) >> shift_;
-        std::uint32_t second = 0;
-        for (std::uint32_t column = 0x80000000u, rest = index; rest != 0; rest >>= 1, column ^= column >> 1)
-            if (rest & 1u) second ^= column;
-        return {unitFloat(owenScramble(reverseBits(index), seeds_[0])), unitFloat(owenScramble(second, seeds_[1]))};
-    }
+    UnitPoint point(std::uint32_t index) const { return {first(index), unitFloat(reverseBits(scrambleReversed(secondReversed(scrambled(index)), seeds_[1])))}; }
+    /// Its first coordinate.
+    float first(std::uint32_t index) const { return unitFloat(reverseBits(scrambleReversed(scrambled(index), seeds_[0]))); }
 
   private:
+    std::uint32_t scrambled(std::uint32_t index) const
+    {
+        return shift_ < 32 ? reverseBits(scrambleReversed(reverseBits(index << shift_), seeds_[2])) >> shift_ : index;
+    }
+
     Philox4 seeds_;
     int shift_;
 };

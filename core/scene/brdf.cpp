@@ -78,13 +78,27 @@ Vec3 positionAt(const Scene& scene, const Triangle& triangle)
     return Vec3((1.0 - b1 - b2) * DVec3(positions[triangle.index[0]]) + b1 * DVec3(positions[triangle.index[1]]) + b2 * DVec3(positions[triangle.index[2]]));
 }
 
-Vec4 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
+float inUnitInterval(float x)
 {
-    Vec4 color = material.baseColor;
-    if (const TextureUse& use = material.baseColorTexture) color *= sampleTextureSrgb(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use));
-    if (!triangle.mesh.colors.empty()) color *= triangle.interpolate(triangle.mesh.colors);
-    for (int c = 0; c < 4; ++c) color[c] = color[c] > 0.0f ? std::min(color[c], 1.0f) : 0.0f;  // NaN too
+    return x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // NaN too
+}
+
+Vec3 baseColorAt(const Scene& scene, const Material& material, const Triangle& triangle)
+{
+    Vec3 color(material.baseColor);
+    if (const TextureUse& use = material.baseColorTexture) color *= Vec3(sampleTextureSrgb(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use)));
+    if (!triangle.mesh.colors.empty()) color *= Vec3(triangle.interpolate(triangle.mesh.colors));
+    for (int c = 0; c < 3; ++c) color[c] = inUnitInterval(color[c]);
     return color;
+}
+
+/// At the base level.
+float alphaAt(const Scene& scene, const Material& material, const Triangle& triangle)
+{
+    float alpha = material.baseColor.a;
+    if (const TextureUse& use = material.baseColorTexture) alpha *= sampleTextureAlpha(*scene.textures[std::size_t(use.texture)], placeAt(triangle, use).uv);
+    if (!triangle.mesh.colors.empty()) alpha *= triangle.interpolate(triangle.mesh.colors).a;
+    return inUnitInterval(alpha);
 }
 
 /// Unit v, or `fallback` where v has no direction. In double: an edge of 1e-12 m must not underflow.
@@ -173,7 +187,7 @@ bool hasSpecularPart(const Material& material)
 bool passesAlphaTest(const Scene& scene, const SurfaceHit& hit)
 {
     const Material& material = scene.materials[std::size_t(scene.meshes[hit.mesh].material)];
-    return !material.alphaMask || baseColorAt(scene, material, triangleAt(scene, hit)).a >= material.alphaCutoff;
+    return !material.alphaMask || alphaAt(scene, material, triangleAt(scene, hit)) >= material.alphaCutoff;
 }
 
 Vec3 positionOf(const Scene& scene, const SurfaceHit& hit)
@@ -200,7 +214,7 @@ Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& t
         roughness *= texel.g;
         metallic *= texel.b;
     }
-    const Vec3 baseColor(baseColorAt(scene, material, triangle));
+    const Vec3 baseColor = baseColorAt(scene, material, triangle);
     surface.roughness = roughness;
     surface.albedo = baseColor * (1.0f - metallic);
     if (hasSpecularPart(material)) surface.specularColor = Vec3(0.04f) + (baseColor - Vec3(0.04f)) * metallic;

@@ -67,18 +67,32 @@ double bilinear(double v00, double v10, double v01, double v11, double tx, doubl
     return top + (bottom - top) * ty;
 }
 
-template <class Decode>
-Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decode& decode)
+/// The four texels about uv, and the weights of those to the right and below.
+struct Texels {
+    Rgba8 t00, t10, t01, t11;
+    float tx, ty;
+};
+
+Texels texelsAt(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv)
 {
     const Taps x = tapsAlong(uv.x, image.width, texture.wrapS, nearest);
     const Taps y = tapsAlong(uv.y, image.height, texture.wrapT, nearest);
-    const Rgba8 t00 = image.at(x.i0, y.i0), t10 = image.at(x.i1, y.i0);
-    const Rgba8 t01 = image.at(x.i0, y.i1), t11 = image.at(x.i1, y.i1);
+    return {image.at(x.i0, y.i0), image.at(x.i1, y.i0), image.at(x.i0, y.i1), image.at(x.i1, y.i1), x.fraction, y.fraction};
+}
+
+float alphaOf(const Texels& t)
+{
+    return float(bilinear(t.t00.a, t.t10.a, t.t01.a, t.t11.a, t.tx, t.ty) / 255.0);
+}
+
+template <class Decode>
+Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decode& decode)
+{
+    const Texels t = texelsAt(texture, image, nearest, uv);
     const auto colour = [&](std::uint8_t Rgba8::*c) {
-        return float(bilinear(decode(t00.*c), decode(t10.*c), decode(t01.*c), decode(t11.*c), x.fraction, y.fraction));
+        return float(bilinear(decode(t.t00.*c), decode(t.t10.*c), decode(t.t01.*c), decode(t.t11.*c), t.tx, t.ty));
     };
-    const double alpha = bilinear(t00.a, t10.a, t01.a, t11.a, x.fraction, y.fraction);
-    return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), float(alpha / 255.0));
+    return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), alphaOf(t));
 }
 
 /// Minified textures are read bilinearly whatever magFilter says.
@@ -96,14 +110,9 @@ Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const
     return fraction > 0.0f ? fine + (at(lower + 1) - fine) * fraction : fine;
 }
 
-double fromUnorm(std::uint8_t value)
-{
-    return double(float(value) / 255.0f);
-}
-double fromSrgb(std::uint8_t value)
-{
-    return double(kLinearFromSrgb[value]);
-}
+// Not functions: each would be called, by its address, for every channel of every texel.
+constexpr auto fromUnorm = [](std::uint8_t value) { return double(float(value) / 255.0f); };
+constexpr auto fromSrgb = [](std::uint8_t value) { return double(kLinearFromSrgb[value]); };
 
 }  // namespace
 
@@ -128,6 +137,12 @@ Vec4 sampleTexture(const Texture& texture, const TexturePlace& place)
 Vec4 sampleTextureSrgb(const Texture& texture, const TexturePlace& place)
 {
     return sample(texture, texture.colorMips, place, fromSrgb);
+}
+
+float sampleTextureAlpha(const Texture& texture, Vec2 uv)
+{
+    if (texture.image.empty()) return 1.0f;
+    return alphaOf(texelsAt(texture, texture.image, texture.nearest, uv));
 }
 
 Vec4 sampleTexture(const Texture& texture, Vec2 uv)

@@ -26,5 +26,7 @@ Vec4 sampleTextureSrgb(const Texture& texture, const TexturePlace& place);
 Vec4 sampleTexture(const Texture& texture, Vec2 uv);
 /// The same, each texel's colour decoded from sRGB to linear before filtering (alpha is linear).
 Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv);
+/// The alpha of both alone.
+float sampleTextureAlpha(const Texture& texture, Vec2 uv);
 
 }  // namespace lrsm

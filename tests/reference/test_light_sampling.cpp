@@ -1,8 +1,9 @@
 #include "core/base/elementary.h"
 #include "core/scene/builtin_scenes.h"
 #include "reference/light_map.h"
-#include "reference/light_pool.h"
+#include "reference/light_technique.h"
 #include "reference/path_trace.h"
+#include "reference/search.h"
 #include "reference/ztest.h"
 #include "reference_scenes.h"
 
@@ -199,9 +200,11 @@ TEST_CASE("light density: integrates to 1, draws by itself, over cuts that crowd
     for (std::size_t i = 0; i < drawn.size(); ++i) CHECK(drawn[i] == Approx(expected[i]).margin(2e-3));
 }
 
-TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[reference][light-pool]")
+namespace {
+
+/// 2^bits rays of a lamp in a room.
+LightPool roomPool(int bits)
 {
-    // Sum of E / density over the points that strike a wall is the flux that it receives: the lamp's, over what it covers of the sphere.
     const Scene scene = roomWith({}, splitPointLight({0.2f, -0.1f, 0.3f}, Vec3(1.5f), kInfinity, "lamp"));
     const EmbreeScene embree(scene);
     const std::vector<LightSampler> lights(scene.lights.begin(), scene.lights.end());
@@ -211,13 +214,89 @@ TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[refe
     std::vector<float> weights(grids->texels());
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1.0f + float(i % 5);
     Tracer tracer(embree, lights);
-    const LightPool pool = drawPool(tracer, maps, {{grids, weights}, {}}, SobolBlock(philox({7, 0, 0, 1}, {2, 3}), 14), 0, 1u << 14, Transport::single);
+    return drawPool(tracer, maps, {{grids, weights}, {}}, SobolBlock(philox({7, 0, 0, 1}, {2, 3}), bits), 0, 1u << bits, Transport::single);
+}
+
+}  // namespace
+
+TEST_CASE("a search without branches is upper_bound", "[reference][light-pool]")
+{
+    for (std::size_t size = 0; size < 40; ++size) {
+        std::vector<double> values(size);
+        for (std::size_t i = 0; i < size; ++i) values[i] = double(i / 3);  // runs of equals
+        for (double x = -1.0; x < 15.0; x += 0.5)
+            CHECK(countUpTo(std::span<const double>(values), x) == std::size_t(std::upper_bound(values.begin(), values.end(), x) - values.begin()));
+    }
+}
+
+TEST_CASE("counts spread by a tent of 3 x 3 that the square's border cuts", "[reference][light-pool]")
+{
+    const LightGrids grids(2, 4);
+    const int tent[3] = {1, 2, 1};
+    for (const std::uint32_t at : {0u, 5u, 7u, 15u, 16u, 30u}) {
+        SpreadCounts counts(grids);
+        counts.add({at, 10, 3, 1}, 2);
+        counts.spread();
+        for (std::uint32_t i = 0; i < 32; ++i) {
+            const int rows = int(i / 4) - int(at / 4), columns = int(i % 4) - int(at % 4);
+            const bool near = i / 16 == at / 16 && std::abs(rows) <= 1 && std::abs(columns) <= 1;
+            const auto share = std::uint32_t(near ? tent[rows + 1] * tent[columns + 1] : 0);
+            CHECK(counts.light[i] == 20 * share);
+            CHECK(counts.tried[i] == 6 * share);
+            CHECK(counts.reached[i] == 2 * share);
+        }
+    }
+}
+
+TEST_CASE("a pool's points are drawn in proportion to their weights, subset by subset", "[reference][light-pool]")
+{
+    // Weights by connection(), which takes one point at a time; the rootless ones of weighDiffuse round differently.
+    LightPool pool = roomPool(7);
+    const LightReceiver receiver{{0.5f, -0.3f, -0.2f}, glm::normalize(Vec3(0.2f, 1.0f, 0.3f)), glm::normalize(Vec3(0.1f, 1.0f, 0.4f))};
+    const CosineResponse cosine{receiver.normal};
+    const auto weightOf = [&](std::size_t j) {
+        Vec3 direction;
+        const Vec3 answer = connection(pool, j, receiver, 16.0f, cosine, direction);
+        return double(pool.points[j].brightness) * double(answer.x + answer.y + answer.z);
+    };
+    std::size_t unseen = 0;
+    for (const std::size_t subsets : {1u, 3u, 5u})
+        for (std::size_t subset = 0; subset < subsets; ++subset)
+            for (const bool diffuse : {false, true}) {
+                if (diffuse && subsets > 1) continue;
+                CAPTURE(subsets, subset, diffuse);
+                layOut(pool, subsets);
+                PoolWeights weights;
+                if (diffuse)
+                    weights.weighDiffuse(pool, receiver, 16.0f);
+                else
+                    weights.weigh(pool, receiver, 16.0f, cosine, subset);
+                double sum = 0.0, below = 0.0;
+                for (std::size_t j = subset; j < pool.size(); j += subsets) sum += weightOf(j);
+                REQUIRE(sum > 0.0);
+                for (std::size_t j = subset; j < pool.size(); j += subsets) {
+                    const double weight = weightOf(j);
+                    unseen += weight == 0.0;
+                    below += weight;
+                    if (!(weight > 1e-4 * sum)) continue;
+                    const Choice choice = weights.choose(float((below - 0.5 * weight) / sum));
+                    CHECK(choice.index == j);
+                    CHECK(double(choice.overDensity) == Approx(double(subsets) * sum / (double(pool.drawn) * weight)).epsilon(1e-5));
+                }
+            }
+    CHECK(unseen > 20);
+}
+
+TEST_CASE("light pool: flux through a wall, by the pool's own densities", "[reference][light-pool]")
+{
+    // Sum of E / density over the points that strike a wall is the flux that it receives: the lamp's, over what it covers of the sphere.
+    const LightPool pool = roomPool(14);
     REQUIRE(pool.drawn == 1u << 14);
 
     double flux = 0.0;
     for (std::size_t i = 0; i < pool.size(); ++i)
         if (pool.points[i].hit.mesh == 2)
-            flux += double(pool.points[i].radianceTowards(Vec3(0.0f)).g) * 3.14159265358979 / 0.7 / double(pool.density[i]) / double(pool.drawn);
+            flux += double(pool.points[i].radianceTowards(Vec3(0.0f)).g) * 3.14159265358979 / 0.7 / double(pool.points[i].density) / double(pool.drawn);
     // Solid angle of the wall z = -1 from 1.3 m in front of it, as four right-angled corners atan(a b / (d sqrt(a^2 + b^2 + d^2))).
     double angle = 0.0;
     for (const double a : {0.8, 1.2})

@@ -135,6 +135,23 @@ TEST_CASE("no uv is too large, not even infinity or NaN", "[scene][texture]")
     CHECK(sampleTexture(Texture{}, {0.5f, 0.5f}) == Vec4(1));
 }
 
+TEST_CASE("alpha alone is the alpha of the whole lookup", "[scene][texture]")
+{
+    std::mt19937 random(2);
+    std::vector<int> grey(64);
+    for (int& g : grey) g = int(random() % 256);
+    for (const Wrap wrap : {Wrap::repeat, Wrap::clampToEdge, Wrap::mirroredRepeat})
+        for (const bool nearest : {false, true}) {
+            const Texture t = texture(16, 4, grey, wrap, nearest);
+            for (int i = 0; i < 200; ++i) {
+                const Vec2 uv(float(random() % 4000) / 1000.0f - 2.0f, float(random() % 4000) / 1000.0f - 2.0f);
+                CHECK(sampleTextureAlpha(t, uv) == sampleTexture(t, uv).a);
+                CHECK(sampleTextureAlpha(t, uv) == sampleTextureSrgb(t, uv).a);
+            }
+        }
+    CHECK(sampleTextureAlpha(Texture{}, {0.5f, 0.5f}) == 1.0f);
+}
+
 TEST_CASE("sRGB is decoded before filtering, alpha not at all", "[scene][texture]")
 {
     for (int v = 0; v < 256; ++v) {
