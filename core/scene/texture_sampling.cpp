@@ -8,14 +8,17 @@
 namespace lrsm {
 namespace {
 
-/// The sRGB decoding function of IEC 61966-2-1 for the 256 stored values, rounded once to float.
-std::array<float, 256> linearFromSrgbTable()
+/// What each of the 256 stored values stands for, rounded once to float.
+using Decoded = std::array<double, 256>;
+template <class Decode>
+Decoded decoded(const Decode& decode)
 {
-    std::array<float, 256> table{};
-    for (int i = 0; i < 256; ++i) table[std::size_t(i)] = linearFromSrgb8(static_cast<std::uint8_t>(i));
+    Decoded table{};
+    for (int i = 0; i < 256; ++i) table[std::size_t(i)] = double(decode(static_cast<std::uint8_t>(i)));
     return table;
 }
-const std::array<float, 256> kLinearFromSrgb = linearFromSrgbTable();
+const Decoded kFromSrgb = decoded(linearFromSrgb8);  ///< the sRGB decoding function of IEC 61966-2-1
+const Decoded kFromUnorm = decoded([](std::uint8_t value) { return float(value) / 255.0f; });
 
 /// One axis of a lookup: the two texels and the weight of the second. Wrapping the coordinate before scaling keeps any finite
 /// uv inside int; a non-finite one reads texel 0.
@@ -67,23 +70,21 @@ double bilinear(double v00, double v10, double v01, double v11, double tx, doubl
     return top + (bottom - top) * ty;
 }
 
-template <class Decode>
-Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decode& decode)
+Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decoded& decode)
 {
     const Taps x = tapsAlong(uv.x, image.width, texture.wrapS, nearest);
     const Taps y = tapsAlong(uv.y, image.height, texture.wrapT, nearest);
     const Rgba8 t00 = image.at(x.i0, y.i0), t10 = image.at(x.i1, y.i0);
     const Rgba8 t01 = image.at(x.i0, y.i1), t11 = image.at(x.i1, y.i1);
     const auto colour = [&](std::uint8_t Rgba8::*c) {
-        return float(bilinear(decode(t00.*c), decode(t10.*c), decode(t01.*c), decode(t11.*c), x.fraction, y.fraction));
+        return float(bilinear(decode[t00.*c], decode[t10.*c], decode[t01.*c], decode[t11.*c], x.fraction, y.fraction));
     };
     const double alpha = bilinear(t00.a, t10.a, t01.a, t11.a, x.fraction, y.fraction);
     return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), float(alpha / 255.0));
 }
 
 /// Minified textures are read bilinearly whatever magFilter says.
-template <class Decode>
-Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const TexturePlace& place, const Decode& decode)
+Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const TexturePlace& place, const Decoded& decode)
 {
     if (texture.image.empty()) return Vec4(1.0f);
     const float level = textureLevel(texture.image, place, mips.size() + 1);
@@ -96,20 +97,11 @@ Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const
     return fraction > 0.0f ? fine + (at(lower + 1) - fine) * fraction : fine;
 }
 
-double fromUnorm(std::uint8_t value)
-{
-    return double(float(value) / 255.0f);
-}
-double fromSrgb(std::uint8_t value)
-{
-    return double(kLinearFromSrgb[value]);
-}
-
 }  // namespace
 
 float linearFromSrgb(std::uint8_t code)
 {
-    return kLinearFromSrgb[code];
+    return static_cast<float>(kFromSrgb[code]);
 }
 
 float textureLevel(const Image<Rgba8>& base, const TexturePlace& place, std::size_t levels)
@@ -122,22 +114,22 @@ float textureLevel(const Image<Rgba8>& base, const TexturePlace& place, std::siz
 
 Vec4 sampleTexture(const Texture& texture, const TexturePlace& place)
 {
-    return sample(texture, texture.dataMips, place, fromUnorm);
+    return sample(texture, texture.dataMips, place, kFromUnorm);
 }
 
 Vec4 sampleTextureSrgb(const Texture& texture, const TexturePlace& place)
 {
-    return sample(texture, texture.colorMips, place, fromSrgb);
+    return sample(texture, texture.colorMips, place, kFromSrgb);
 }
 
 Vec4 sampleTexture(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromUnorm);
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, kFromUnorm);
 }
 
 Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromSrgb);
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, kFromSrgb);
 }
 
 }  // namespace lrsm
