@@ -12,7 +12,7 @@ namespace {
 constexpr double kReceiversPerCell = 2.0;  // measured: between 1 and 4 the time hardly changes
 constexpr double kNearestOccluder = 1e-6;  // of the nearest receiver's distance: what is nearer to a light is inside its bulb
 constexpr std::size_t kReceiversPerTask = 4096, kTrianglesPerTask = 512;
-constexpr int kBands = 64;   // of the grid's rows, a task each
+constexpr int kBands = 64;  // of the grid's rows, a task each
 constexpr int kNarrow = 3;  // columns: fewer are tried all in every row
 
 /// n . p - d: positive on one side.
@@ -68,7 +68,7 @@ class ShadowVolume {
 /// The surfaces of a picture that a light may reach, sorted by the cells of a grid over its view.
 struct Receivers {
     struct Cell {
-        std::uint32_t begin = 0, end = 0;                         ///< of the receivers that nothing is known to darken
+        std::uint32_t begin = 0, end = 0;                       ///< of the receivers that nothing is known to darken
         float depth = -std::numeric_limits<float>::infinity();  ///< along the light's axis: none of them is farther
     };
 

@@ -1,17 +1,12 @@
 #include "conetrace/frame/smooth_irradiance.h"
 
+#include "conetrace/frame/four_lanes.h"
 #include "conetrace/frame/same_surface.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
-
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
 
 namespace lrsm {
 namespace {
@@ -20,22 +15,9 @@ constexpr int kFirstSpacing = 4;  ///< pixels: the width of filterIrradiance
 constexpr int kHorizonSteps[] = {2, 4, 8, 16, 32, 64, 128, 256};
 constexpr int kDirections[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
-/// Four pixels of a row at a time.
 namespace nearness_lanes {
 
-#define LRSM_LANES 4
-#include "core/base/lanes.inc"
-#undef LRSM_LANES
-#undef LRSM_LANES_X86
-
-struct LaneVec3 {
-    LaneFloat x, y, z;
-};
-
-LaneFloat dot(const LaneVec3& a, const LaneVec3& b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using namespace four_lanes;
 
 /// Positions, NaN where nothing was drawn and outside the picture. A row holds all x, then all y, then all z.
 class Places {
@@ -66,14 +48,13 @@ class Places {
     Image<float> rows_;
 };
 
-LaneFloat nearnessAlong(const GBuffer& gbuffer, const Places& places, const LaneVec3& position, const LaneVec3& normal, int x, int y,
-                        const int (&direction)[2])
+LaneFloat nearnessAlong(const GBuffer& gbuffer, const Places& places, const LaneVec3& position, const LaneVec3& normal, int x, int y, const int (&direction)[2])
 {
     LaneFloat sum{}, horizon = lanesOf(kSamePlaneSlope);  // what is lower may be the surface itself
     for (const int step : kHorizonSteps) {
         const int nx = x + direction[0] * step, ny = y + direction[1] * step;
         if (ny < 0 || ny >= gbuffer.height || nx <= -kLanes || nx >= gbuffer.width) break;
-        const LaneVec3 there = places.at(nx, ny), between{there.x - position.x, there.y - position.y, there.z - position.z};
+        const LaneVec3 between = places.at(nx, ny) - position;
         const LaneFloat above = dot(between, normal), distance = squareRoot(dot(between, between)), sine = above / distance;
         const LaneInt rises = sine > horizon;  // not where one of the two is none
         if (maskOf(rises) == 0) continue;

@@ -2,6 +2,8 @@
 
 #include "catch.h"
 
+#include <random>
+
 using namespace lrsm;
 
 namespace {
@@ -129,4 +131,35 @@ TEST_CASE("smoothing: nearness falls with the distance of a wall, and an open fl
     const Image<float> larger = nearnessOf(g);
     for (std::size_t i = 0; i < larger.texels.size(); ++i) REQUIRE(larger.texels[i] == Approx(nearness.texels[i] / 4).margin(1e-7));
     for (const float v : nearnessOf(corner(32, 32, 32)).texels) REQUIRE(v == 0.0f);
+}
+
+TEST_CASE("smoothing: nearness is that of each pixel alone", "[conetrace][smooth]")
+{
+    // Scattered points and holes, wider than the farthest step; the width is no multiple of the lanes.
+    GBuffer g = corner(541, 270, 200);
+    std::minstd_rand random(3);
+    for (std::size_t i = 0; i < g.position.texels.size(); ++i) {
+        if (random() % 4 == 0) g.objectId.texels[i] = 0;
+        g.position.texels[i].z += float(random() % 1024) / 512.0f;
+    }
+    const Image<float> nearness = nearnessOf(g);
+    for (int y = 0; y < g.height; y += 7)
+        for (int x = 0; x < g.width; ++x) {
+            const std::size_t centre = nearness.index(x, y);
+            float mean = 0.0f;
+            for (int d = 0; d < 9 && g.covered(centre); ++d) {
+                const int order[9] = {5, 8, 7, 6, 3, 0, 1, 2, 4}, dx = order[d] % 3 - 1, dy = order[d] / 3 - 1;
+                float sum = 0.0f, horizon = 0.1f;
+                for (int step = 2; step <= 256 && (dx != 0 || dy != 0); step *= 2) {
+                    const int nx = x + dx * step, ny = y + dy * step;
+                    if (nx < 0 || ny < 0 || nx >= g.width || ny >= g.height || g.objectId.at(nx, ny) == 0) continue;
+                    const Vec3 between = g.position.at(nx, ny) - g.position.at(x, y);
+                    const float distance = glm::length(between), sine = glm::dot(between, g.geometricNormal.at(x, y)) / distance;
+                    if (sine > horizon) sum += (sine * sine - horizon * horizon) / distance;
+                    horizon = std::max(horizon, sine);
+                }
+                mean += sum;
+            }
+            REQUIRE(nearness.texels[centre] == mean / 8.0f);
+        }
 }
