@@ -88,6 +88,23 @@ TEST_CASE("smoothing: light does not cross a thin wall seen from its edge", "[co
         for (int x = 0; x < 96; ++x) REQUIRE(out.at(x, y).x == Approx(x > 48 ? 1.0 : 0.0).margin(1e-6));
 }
 
+TEST_CASE("smoothing: light does not cross a step that is low beside the distance of its taps", "[conetrace][smooth]")
+{
+    GBuffer g = corner(96, 48, 96);
+    Image<Vec3> in(96, 48);
+    const bool alongX = GENERATE(false, true);
+    const auto isUp = [&](int x, int y) { return alongX ? x > 48 : y > 24; };
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            if (!isUp(x, y)) continue;
+            g.position.at(x, y).z = 0.3f;  // four pixels away less than a tenth of the distance
+            in.at(x, y) = Vec3(1);
+        }
+    const Image<Vec3> out = smoothIrradiance(in, g, 2);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) REQUIRE(out.at(x, y).x == (isUp(x, y) ? 1.0f : 0.0f));
+}
+
 TEST_CASE("smoothing: a gradient stays as it is up to the corner", "[conetrace][smooth]")
 {
     const GBuffer g = corner(96, 48, 64);
