@@ -89,6 +89,7 @@ class LightGrid {
         bool empty() const { return last < first; }
     };
     Range rowsOf(const Polygon& polygon) const { return rangeOf(polygon.min().y, polygon.max().y, min_.y, rows_); }
+    Range columnsOf(const Polygon& polygon) const { return rangeOf(polygon.min().x, polygon.max().x, min_.x, columns_); }
     /// In one row of cells: what of the polygon is in its strip.
     Range columnsOf(const Polygon& polygon, int row) const;
 

@@ -4,15 +4,16 @@
 #include "core/base/parallel.h"
 #include "core/scene/brdf.h"
 
-#include <numeric>
+#include <utility>
 
 namespace lrsm {
 namespace {
 
 constexpr double kReceiversPerCell = 2.0;  // measured: between 1 and 4 the time hardly changes
 constexpr double kNearestOccluder = 1e-6;  // of the nearest receiver's distance: what is nearer to a light is inside its bulb
-constexpr std::size_t kReceiversPerTask = 4096, kTrianglesPerTask = 4096;
+constexpr std::size_t kReceiversPerTask = 4096, kTrianglesPerTask = 512;
 constexpr int kBands = 64;  // of the grid's rows, a task each
+constexpr int kNarrow = 3;  // columns: fewer are tried all in every row
 
 /// n . p - d: positive on one side.
 struct Plane {
@@ -66,18 +67,25 @@ class ShadowVolume {
 
 /// The surfaces of a picture that a light may reach, sorted by the cells of a grid over its view.
 struct Receivers {
+    struct Cell {
+        std::uint32_t begin = 0, end = 0;                       ///< of the receivers that nothing is known to darken
+        float depth = -std::numeric_limits<float>::infinity();  ///< along the light's axis: none of them is farther
+    };
+
     LightGrid grid;
-    double nearest = 0.0;                   ///< along the light's axis, metres
-    std::vector<Vec3> origins;              ///< world: where the lines to the light start
-    std::vector<std::uint32_t> pixels;      ///< of the picture
-    std::vector<std::uint32_t> cellBegins;  ///< one more than cells
-    std::vector<double> cellDepths;         ///< of a cell's farthest, along the light's axis
+    double nearest = 0.0;               ///< along the light's axis, metres
+    std::vector<Vec3> origins;          ///< world: where the lines to the light start
+    std::vector<std::uint32_t> pixels;  ///< of the picture
+    std::vector<Cell> cells;
+
+    const Cell& at(int row, int column) const { return cells[std::size_t(row) * std::size_t(grid.columns()) + std::size_t(column)]; }
+    Cell& at(int row, int column) { return cells[std::size_t(row) * std::size_t(grid.columns()) + std::size_t(column)]; }
 };
 
-/// One receiver before sorting; depth is NaN where there is none.
+/// A pixel before sorting.
 struct Seen {
-    DVec2 onPlane{0.0};
-    double depth = std::numeric_limits<double>::quiet_NaN();
+    float depth = std::numeric_limits<float>::quiet_NaN();  ///< not less than the receiver's; NaN: there is none
+    std::uint32_t cell = 0;
     bool valid() const { return !std::isnan(depth); }
 };
 
@@ -103,91 +111,105 @@ Vec3 originOf(const GBuffer& gbuffer, std::size_t i, float offset)
     return p + gbuffer.geometricNormal.texels[i] * (kShadowRayOffset * std::max({a.x, a.y, a.z}) + offset);
 }
 
-std::vector<Seen> seeReceivers(const Scene& scene, const GBuffer& gbuffer, const Light& light, const LightView& view)
+/// Finds the receivers, their depths and the grid over them.
+LightGrid seeReceivers(const GBuffer& gbuffer, const Light& light, const LightView& view, float offset, std::vector<Seen>& seen)
 {
+    struct Bounds {
+        DVec2 min{std::numeric_limits<double>::infinity()}, max{-std::numeric_limits<double>::infinity()};
+        std::size_t count = 0;
+    };
     const LightSampler sampler(light);
-    const float offset = sceneOffset(scene);
-    std::vector<Seen> seen(gbuffer.objectId.texels.size());
+    std::vector<Bounds> parts((seen.size() + kReceiversPerTask - 1) / kReceiversPerTask);
     parallelFor(seen.size(), kReceiversPerTask, [&](std::size_t begin, std::size_t end) {
+        Bounds& part = parts[begin / kReceiversPerTask];
         for (std::size_t i = begin; i < end; ++i) {
             if (!mayBeLit(gbuffer, sampler, i)) continue;
             const DVec3 p = view.toLightSpace(DVec3(originOf(gbuffer, i, offset)));
-            if (view.directional() || p.z > 0.0) seen[i] = {view.onPlane(p), p.z};
+            if (!view.directional() && !(p.z > 0.0)) continue;
+            const DVec2 onPlane = view.onPlane(p);
+            part = {glm::min(part.min, onPlane), glm::max(part.max, onPlane), part.count + 1};
+            seen[i].depth = std::nextafter(float(p.z), std::numeric_limits<float>::infinity());
         }
     });
-    return seen;
-}
-
-LightGrid gridOver(const std::vector<Seen>& seen)
-{
-    constexpr double kInf = std::numeric_limits<double>::infinity();
-    DVec2 min(kInf), max(-kInf);
-    std::size_t count = 0;
-    for (const Seen& each : seen) {
-        if (!each.valid()) continue;
-        min = glm::min(min, each.onPlane);
-        max = glm::max(max, each.onPlane);
-        ++count;
-    }
-    return count > 0 ? LightGrid(min, max, double(count) / kReceiversPerCell) : LightGrid();
+    Bounds all;
+    for (const Bounds& part : parts) all = {glm::min(all.min, part.min), glm::max(all.max, part.max), all.count + part.count};
+    return all.count > 0 ? LightGrid(all.min, all.max, double(all.count) / kReceiversPerCell) : LightGrid();
 }
 
 /// Counting sort by cell, pixels in order within each.
-Receivers sortReceivers(const Scene& scene, const GBuffer& gbuffer, const std::vector<Seen>& seen)
+Receivers sortReceivers(const Scene& scene, const GBuffer& gbuffer, const Light& light, const LightView& view)
 {
+    const float offset = sceneOffset(scene);
+    std::vector<Seen> seen(gbuffer.objectId.texels.size());
     Receivers sorted;
-    sorted.grid = gridOver(seen);
-    const LightGrid& grid = sorted.grid;
-    sorted.cellBegins.assign(grid.cells() + 1, 0);
-    if (grid.cells() == 0) return sorted;
-    sorted.cellDepths.assign(grid.cells(), -std::numeric_limits<double>::infinity());
+    sorted.grid = seeReceivers(gbuffer, light, view, offset, seen);
+    if (sorted.grid.cells() == 0) return sorted;
+    parallelFor(seen.size(), kReceiversPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (seen[i].valid()) seen[i].cell = std::uint32_t(sorted.grid.cellOf(view.onPlane(view.toLightSpace(DVec3(originOf(gbuffer, i, offset))))));
+    });
+    sorted.cells.resize(sorted.grid.cells());
     sorted.nearest = std::numeric_limits<double>::infinity();
-    std::vector<std::uint32_t> cells(seen.size());
+    for (const Seen& each : seen) {
+        if (!each.valid()) continue;
+        Receivers::Cell& cell = sorted.cells[each.cell];
+        ++cell.end;
+        cell.depth = std::max(cell.depth, each.depth);
+        sorted.nearest = std::min(sorted.nearest, double(each.depth));
+    }
+    // Counts become begins; each receiver then moves its cell's end.
+    std::uint32_t count = 0;
+    for (Receivers::Cell& cell : sorted.cells) {
+        cell.begin = count;
+        count += std::exchange(cell.end, count);
+    }
+    sorted.origins.resize(count);
+    sorted.pixels.resize(count);
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!seen[i].valid()) continue;
-        const std::size_t cell = grid.cellOf(seen[i].onPlane);
-        cells[i] = static_cast<std::uint32_t>(cell);
-        ++sorted.cellBegins[cell];
-        sorted.cellDepths[cell] = std::max(sorted.cellDepths[cell], seen[i].depth);
-        sorted.nearest = std::min(sorted.nearest, seen[i].depth);
-    }
-    // Begins become ends by the sum, and begins again as each receiver takes the last free place of its cell.
-    std::partial_sum(sorted.cellBegins.begin(), sorted.cellBegins.end(), sorted.cellBegins.begin());
-    sorted.origins.resize(sorted.cellBegins.back());
-    sorted.pixels.resize(sorted.cellBegins.back());
-    const float offset = sceneOffset(scene);
-    for (std::size_t i = seen.size(); i-- > 0;) {
-        if (!seen[i].valid()) continue;
-        const std::size_t at = --sorted.cellBegins[cells[i]];
+        const std::uint32_t at = sorted.cells[seen[i].cell].end++;
         sorted.origins[at] = originOf(gbuffer, i, offset);
         sorted.pixels[at] = static_cast<std::uint32_t>(i);
     }
     return sorted;
 }
 
-/// A triangle that may shadow something, and the rows of the grid that it touches.
+/// A triangle that may shadow something, and the cells around those that it touches.
 struct Occluder {
     std::uint32_t mesh, triangle;
-    LightGrid::Range rows;
+    LightGrid::Range rows, columns;
 };
+
+/// Some of them, and the rows of all.
+struct Occluders {
+    std::vector<Occluder> each;
+    LightGrid::Range rows{std::numeric_limits<int>::max(), -1};
+};
+
+bool overlap(const LightGrid::Range& a, const LightGrid::Range& b)
+{
+    return a.first <= b.last && b.first <= a.last;
+}
 
 class ShadowTracer {
   public:
-    ShadowTracer(const Scene& scene, const LightView& view, const Receivers& receivers, bool alphaTest)
+    /// Takes the receivers that a triangle darkens out of their cells.
+    ShadowTracer(const Scene& scene, const LightView& view, Receivers& receivers, bool alphaTest)
         : scene_(scene), view_(view), receivers_(receivers), alphaTest_(alphaTest)
     {
         for (std::size_t m = 0; m < scene.meshes.size(); ++m) findOccluders(static_cast<std::uint32_t>(m));
     }
 
-    /// Marks what is dark in the rows of one band.
-    void darken(int band, std::vector<std::uint8_t>& dark) const
+    /// Marks what is dark in the rows of one band: no two bands share a cell.
+    void darken(int band, Image<std::uint8_t>& visibility) const
     {
         const LightGrid& grid = receivers_.grid;
         const LightGrid::Range rows{grid.rows() * band / kBands, grid.rows() * (band + 1) / kBands - 1};
-        if (rows.empty() || rowIsEmpty(rows)) return;
-        for (const std::vector<Occluder>& chunk : occluders_)
-            for (const Occluder& occluder : chunk)
-                if (occluder.rows.first <= rows.last && occluder.rows.last >= rows.first) darkenBehind(occluder, rows, dark);
+        for (const Occluders& chunk : occluders_) {
+            if (!overlap(chunk.rows, rows)) continue;
+            for (const Occluder& occluder : chunk.each)
+                if (overlap(occluder.rows, rows)) darkenBehind(occluder, rows, visibility);
+        }
     }
 
   private:
@@ -201,12 +223,15 @@ class ShadowTracer {
     {
         return {view_.toLightSpace(p[0]), view_.toLightSpace(p[1]), view_.toLightSpace(p[2])};
     }
-    Polygon polygonOf(const std::array<DVec3, 3>& p) const { return lrsm::polygonOf(view_, inLightSpace(p), kNearestOccluder * receivers_.nearest); }
+    Polygon polygonOf(const std::array<DVec3, 3>& inLightSpace) const { return lrsm::polygonOf(view_, inLightSpace, kNearestOccluder * receivers_.nearest); }
+    static double nearestOf(const std::array<DVec3, 3>& inLightSpace) { return std::min({inLightSpace[0].z, inLightSpace[1].z, inLightSpace[2].z}); }
 
-    bool rowIsEmpty(const LightGrid::Range& rows) const
+    /// Receivers in a row that a triangle so far away may darken?
+    bool rowReaches(int row, const LightGrid::Range& columns, double nearest) const
     {
-        const auto columns = static_cast<std::size_t>(receivers_.grid.columns());
-        return receivers_.cellBegins[std::size_t(rows.first) * columns] == receivers_.cellBegins[std::size_t(rows.last + 1) * columns];
+        for (int column = columns.first; column <= columns.last; ++column)
+            if (receivers_.at(row, column).depth > nearest) return true;
+        return false;
     }
 
     void findOccluders(std::uint32_t m)
@@ -215,36 +240,49 @@ class ShadowTracer {
         const std::size_t count = mesh.triangles.size(), first = occluders_.size();
         occluders_.resize(first + (count + kTrianglesPerTask - 1) / kTrianglesPerTask);
         parallelFor(count, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-            std::vector<Occluder>& chunk = occluders_[first + begin / kTrianglesPerTask];
+            Occluders& chunk = occluders_[first + begin / kTrianglesPerTask];
             for (std::size_t t = begin; t < end; ++t) {
-                const Polygon polygon = polygonOf(cornersOf(m, static_cast<std::uint32_t>(t)));
+                const std::array<DVec3, 3> p = inLightSpace(cornersOf(m, static_cast<std::uint32_t>(t)));
+                const Polygon polygon = polygonOf(p);
                 if (polygon.count == 0) continue;
-                const LightGrid::Range rows = receivers_.grid.rowsOf(polygon);
-                if (!rows.empty()) chunk.push_back({m, static_cast<std::uint32_t>(t), rows});
+                LightGrid::Range rows = receivers_.grid.rowsOf(polygon);
+                const LightGrid::Range columns = receivers_.grid.columnsOf(polygon);
+                const double nearest = nearestOf(p);
+                while (!rows.empty() && !rowReaches(rows.first, columns, nearest)) ++rows.first;
+                while (!rows.empty() && !rowReaches(rows.last, columns, nearest)) --rows.last;
+                if (rows.empty()) continue;
+                chunk.each.push_back({m, static_cast<std::uint32_t>(t), rows, columns});
+                chunk.rows = {std::min(chunk.rows.first, rows.first), std::max(chunk.rows.last, rows.last)};
             }
         });
     }
 
-    void darkenBehind(const Occluder& occluder, const LightGrid::Range& band, std::vector<std::uint8_t>& dark) const
+    void darkenBehind(const Occluder& occluder, const LightGrid::Range& band, Image<std::uint8_t>& visibility) const
     {
         const std::array<DVec3, 3> corners = cornersOf(occluder.mesh, occluder.triangle), p = inLightSpace(corners);
         const ShadowVolume volume(view_, corners);
         const Material& material = scene_.materials[std::size_t(scene_.meshes[occluder.mesh].material)];
         if (volume.edgeOn() || !(volume.frontLit() || material.doubleSided)) return;
-        const Polygon polygon = polygonOf(corners);
-        const double nearest = std::min({p[0].z, p[1].z, p[2].z});
+        const Polygon polygon = polygonOf(p);
+        const double nearest = nearestOf(p);
         const bool masked = alphaTest_ && material.alphaMask;
+        const auto darkens = [&](const DVec3& origin) { return volume.contains(origin) && (!masked || keeps(occluder, volume.barycentrics(origin))); };
 
-        const LightGrid& grid = receivers_.grid;
+        const bool narrow = occluder.columns.last - occluder.columns.first < kNarrow;
         for (int row = std::max(band.first, occluder.rows.first); row <= std::min(band.last, occluder.rows.last); ++row) {
-            const LightGrid::Range columns = grid.columnsOf(polygon, row);
+            const LightGrid::Range columns = narrow ? occluder.columns : receivers_.grid.columnsOf(polygon, row);
             for (int column = columns.first; column <= columns.last; ++column) {
-                const std::size_t cell = std::size_t(row) * std::size_t(grid.columns()) + std::size_t(column);
-                if (receivers_.cellDepths[cell] <= nearest) continue;
-                for (std::size_t i = receivers_.cellBegins[cell]; i < receivers_.cellBegins[cell + 1]; ++i) {
-                    if (dark[i]) continue;
-                    const DVec3 origin(receivers_.origins[i]);
-                    dark[i] = volume.contains(origin) && (!masked || keeps(occluder, volume.barycentrics(origin)));
+                Receivers::Cell& cell = receivers_.at(row, column);
+                if (cell.depth <= nearest) continue;
+                for (std::uint32_t i = cell.begin; i < cell.end;) {
+                    if (!darkens(DVec3(receivers_.origins[i]))) {
+                        ++i;
+                        continue;
+                    }
+                    visibility.texels[receivers_.pixels[i]] = 0;
+                    --cell.end;  // the last takes its place
+                    receivers_.origins[i] = receivers_.origins[cell.end];
+                    receivers_.pixels[i] = receivers_.pixels[cell.end];
                 }
             }
         }
@@ -254,9 +292,9 @@ class ShadowTracer {
 
     const Scene& scene_;
     const LightView& view_;
-    const Receivers& receivers_;
+    Receivers& receivers_;
     bool alphaTest_;
-    std::vector<std::vector<Occluder>> occluders_;  ///< by chunks of triangles
+    std::vector<Occluders> occluders_;  ///< by chunks of triangles
 };
 
 }  // namespace
@@ -265,14 +303,11 @@ Image<std::uint8_t> traceShadowRays(const Scene& scene, const GBuffer& gbuffer, 
 {
     Image<std::uint8_t> visibility(gbuffer.width, gbuffer.height, 1);
     const LightView view(light);
-    const Receivers receivers = sortReceivers(scene, gbuffer, seeReceivers(scene, gbuffer, light, view));
+    Receivers receivers = sortReceivers(scene, gbuffer, light, view);
     if (receivers.origins.empty()) return visibility;
 
     const ShadowTracer tracer(scene, view, receivers, needs.alphaTest);
-    std::vector<std::uint8_t> dark(receivers.origins.size(), 0);
-    parallelFor(kBands, 1, [&](std::size_t band, std::size_t) { tracer.darken(static_cast<int>(band), dark); });
-    for (std::size_t i = 0; i < dark.size(); ++i)
-        if (dark[i]) visibility.texels[receivers.pixels[i]] = 0;
+    parallelFor(kBands, 1, [&](std::size_t band, std::size_t) { tracer.darken(static_cast<int>(band), visibility); });
     return visibility;
 }
 

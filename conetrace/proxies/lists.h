@@ -55,33 +55,32 @@ inline Counters countersOf(const VisibilityLists& lists)
 /// A set of cells and how many rays met each, filled and emptied again and again; comes out in order.
 class CellSet {
   public:
-    explicit CellSet(std::size_t cells) : words_((cells + 63) / 64), hits_(cells, 0) {}
+    explicit CellSet(std::size_t cells) : words_((cells + 63) / 64), groups_((words_.size() + 63) / 64), hits_(cells, 0) {}
     void add(std::uint32_t cell, std::uint32_t hits)
     {
         hits_[cell] += hits;
-        std::uint64_t& word = words_[cell / 64];
-        if (word == 0) touched_.push_back(cell / 64);
-        word |= std::uint64_t(1) << (cell % 64);
+        words_[cell / 64] |= bit(cell);
+        groups_[cell / 64 / 64] |= bit(cell / 64);
     }
     /// Appends the cells, rising, and their hits, and is empty then.
     void moveTo(VisibilityLists& out)
     {
-        std::sort(touched_.begin(), touched_.end());
-        for (const std::uint32_t index : touched_) {
-            for (std::uint64_t word = words_[index]; word != 0; word &= word - 1) {
-                const std::uint32_t cell = index * 64 + static_cast<std::uint32_t>(std::countr_zero(word));
-                out.cells.push_back(cell);
-                out.hits.push_back(std::exchange(hits_[cell], 0u));
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+            for (std::uint64_t group = std::exchange(groups_[g], 0u); group != 0; group &= group - 1) {
+                const std::size_t index = g * 64 + std::size_t(std::countr_zero(group));
+                for (std::uint64_t word = std::exchange(words_[index], 0u); word != 0; word &= word - 1) {
+                    const std::size_t cell = index * 64 + std::size_t(std::countr_zero(word));
+                    out.cells.push_back(static_cast<std::uint32_t>(cell));
+                    out.hits.push_back(std::exchange(hits_[cell], 0u));
+                }
             }
-            words_[index] = 0;
-        }
-        touched_.clear();
     }
 
   private:
-    std::vector<std::uint64_t> words_;
-    std::vector<std::uint32_t> hits_;     ///< by cell
-    std::vector<std::uint32_t> touched_;  ///< words that are not 0
+    static std::uint64_t bit(std::uint32_t place) { return std::uint64_t(1) << (place % 64); }
+
+    std::vector<std::uint64_t> words_, groups_;  ///< bits of cells; of words that are not 0
+    std::vector<std::uint32_t> hits_;            ///< by cell
 };
 
 /// Lists of each row of blocks, made apart, one after the other.

@@ -21,10 +21,11 @@ class MemoryFile : public Imf::OStream {
     explicit MemoryFile(std::vector<std::byte>& bytes) : Imf::OStream("memory"), bytes_(bytes) {}
     void write(const char* data, int size) override
     {
-        const std::size_t end = position_ + std::size_t(size);
-        if (end > bytes_.size()) bytes_.resize(end);
-        std::copy_n(reinterpret_cast<const std::byte*>(data), size, bytes_.data() + position_);
-        position_ = end;
+        const auto* first = reinterpret_cast<const std::byte*>(data);
+        const std::size_t inside = std::min(std::size_t(size), bytes_.size() - position_);
+        std::copy_n(first, inside, bytes_.data() + position_);
+        bytes_.insert(bytes_.end(), first + inside, first + size);
+        position_ += std::size_t(size);
     }
     std::uint64_t tellp() override { return position_; }
     void seekp(std::uint64_t position) override { position_ = position; }
@@ -58,7 +59,7 @@ std::vector<std::byte> encodeExr(const LayeredImage& image)
     }
 
     std::vector<std::byte> bytes;
-    bytes.reserve(bytesRaw / 2);
+    bytes.reserve(bytesRaw);  // never grown: what is not written is no memory
     try {
         MemoryFile file(bytes);
         constexpr int kCallersThread = 0;

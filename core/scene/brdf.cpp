@@ -51,15 +51,19 @@ TexturePlace placeAt(const Triangle& triangle, const TextureUse& use)
     return {transformUv(use, triangle.interpolate(stream)), moved(triangle.right), moved(triangle.down)};
 }
 
-/// The next pixel's ray, parallel to `toViewer` in the limit, meets the triangle's plane where b1 and b2 have moved by this.
-Vec2 movement(const Triangle& triangle, const Vec3& acrossAxis, const Vec3& toViewer)
+/// The next pixel's ray, parallel to `toViewer` in the limit, meets the triangle's plane where b1 and b2 have moved by this: right and down.
+void setMovement(Triangle& triangle, const PixelSpacing& spacing, const Vec3& toViewer)
 {
     const DVec3 p0 = triangle.mesh.positions[triangle.index[0]];
     const DVec3 e1 = DVec3(triangle.mesh.positions[triangle.index[1]]) - p0, e2 = DVec3(triangle.mesh.positions[triangle.index[2]]) - p0;
-    const DVec3 n = glm::cross(e1, e2), v(toViewer), s(acrossAxis);
-    const DVec3 along = s - v * (glm::dot(n, s) / glm::dot(n, v));
-    const double area2 = glm::dot(n, n);
-    return Vec2(glm::dvec2(glm::dot(glm::cross(along, e2), n), glm::dot(glm::cross(e1, along), n)) / area2);
+    const DVec3 n = glm::cross(e1, e2), v(toViewer);
+    const double facing = glm::dot(n, v), area2 = glm::dot(n, n);
+    const auto movement = [&](const DVec3& across) {
+        const DVec3 along = across - v * (glm::dot(n, across) / facing);
+        return Vec2(glm::dvec2(glm::dot(glm::cross(along, e2), n), glm::dot(glm::cross(e1, along), n)) / area2);
+    };
+    triangle.right = movement(spacing.right);
+    triangle.down = movement(spacing.down);
 }
 
 bool hasTexture(const Material& material)
@@ -199,10 +203,7 @@ Surface evaluateSurface(const Scene& scene, const SurfaceHit& hit, const Vec3& t
 {
     Triangle triangle = triangleAt(scene, hit);
     const Material& material = scene.materials[std::size_t(triangle.mesh.material)];
-    if (spacing && hasTexture(material)) {
-        triangle.right = movement(triangle, spacing->right, toViewer);
-        triangle.down = movement(triangle, spacing->down, toViewer);
-    }
+    if (spacing && hasTexture(material)) setMovement(triangle, *spacing, toViewer);
 
     Surface surface;
     surface.position = positionAt(scene, triangle);

@@ -8,14 +8,17 @@
 namespace lrsm {
 namespace {
 
-/// The sRGB decoding function of IEC 61966-2-1 for the 256 stored values, rounded once to float.
-std::array<float, 256> linearFromSrgbTable()
+/// What each of the 256 stored values stands for, rounded once to float.
+using Decoded = std::array<double, 256>;
+template <class Decode>
+Decoded decoded(const Decode& decode)
 {
-    std::array<float, 256> table{};
-    for (int i = 0; i < 256; ++i) table[std::size_t(i)] = linearFromSrgb8(static_cast<std::uint8_t>(i));
+    Decoded table{};
+    for (int i = 0; i < 256; ++i) table[std::size_t(i)] = double(decode(static_cast<std::uint8_t>(i)));
     return table;
 }
-const std::array<float, 256> kLinearFromSrgb = linearFromSrgbTable();
+const Decoded kFromSrgb = decoded(linearFromSrgb8);  ///< the sRGB decoding function of IEC 61966-2-1
+const Decoded kFromUnorm = decoded([](std::uint8_t value) { return float(value) / 255.0f; });
 
 /// One axis of a lookup: the two texels and the weight of the second. Wrapping the coordinate before scaling keeps any finite
 /// uv inside int; a non-finite one reads texel 0.
@@ -85,19 +88,17 @@ float alphaOf(const Texels& t)
     return float(bilinear(t.t00.a, t.t10.a, t.t01.a, t.t11.a, t.tx, t.ty) / 255.0);
 }
 
-template <class Decode>
-Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decode& decode)
+Vec4 sampleLevel(const Texture& texture, const Image<Rgba8>& image, bool nearest, Vec2 uv, const Decoded& decode)
 {
     const Texels t = texelsAt(texture, image, nearest, uv);
     const auto colour = [&](std::uint8_t Rgba8::*c) {
-        return float(bilinear(decode(t.t00.*c), decode(t.t10.*c), decode(t.t01.*c), decode(t.t11.*c), t.tx, t.ty));
+        return float(bilinear(decode[t.t00.*c], decode[t.t10.*c], decode[t.t01.*c], decode[t.t11.*c], t.tx, t.ty));
     };
     return Vec4(colour(&Rgba8::r), colour(&Rgba8::g), colour(&Rgba8::b), alphaOf(t));
 }
 
 /// Minified textures are read bilinearly whatever magFilter says.
-template <class Decode>
-Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const TexturePlace& place, const Decode& decode)
+Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const TexturePlace& place, const Decoded& decode)
 {
     if (texture.image.empty()) return Vec4(1.0f);
     const float level = textureLevel(texture.image, place, mips.size() + 1);
@@ -110,15 +111,11 @@ Vec4 sample(const Texture& texture, const std::vector<Image<Rgba8>>& mips, const
     return fraction > 0.0f ? fine + (at(lower + 1) - fine) * fraction : fine;
 }
 
-// Not functions: each would be called, by its address, for every channel of every texel.
-constexpr auto fromUnorm = [](std::uint8_t value) { return double(float(value) / 255.0f); };
-constexpr auto fromSrgb = [](std::uint8_t value) { return double(kLinearFromSrgb[value]); };
-
 }  // namespace
 
 float linearFromSrgb(std::uint8_t code)
 {
-    return kLinearFromSrgb[code];
+    return static_cast<float>(kFromSrgb[code]);
 }
 
 float textureLevel(const Image<Rgba8>& base, const TexturePlace& place, std::size_t levels)
@@ -131,12 +128,12 @@ float textureLevel(const Image<Rgba8>& base, const TexturePlace& place, std::siz
 
 Vec4 sampleTexture(const Texture& texture, const TexturePlace& place)
 {
-    return sample(texture, texture.dataMips, place, fromUnorm);
+    return sample(texture, texture.dataMips, place, kFromUnorm);
 }
 
 Vec4 sampleTextureSrgb(const Texture& texture, const TexturePlace& place)
 {
-    return sample(texture, texture.colorMips, place, fromSrgb);
+    return sample(texture, texture.colorMips, place, kFromSrgb);
 }
 
 float sampleTextureAlpha(const Texture& texture, Vec2 uv)
@@ -147,12 +144,12 @@ float sampleTextureAlpha(const Texture& texture, Vec2 uv)
 
 Vec4 sampleTexture(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromUnorm);
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, kFromUnorm);
 }
 
 Vec4 sampleTextureSrgb(const Texture& texture, Vec2 uv)
 {
-    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, fromSrgb);
+    return sample(texture, {}, {.uv = uv, .uvRight = {}, .uvDown = {}}, kFromSrgb);
 }
 
 }  // namespace lrsm

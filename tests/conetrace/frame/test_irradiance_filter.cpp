@@ -5,6 +5,8 @@
 
 #include "catch.h"
 
+#include <random>
+
 using namespace lrsm;
 
 TEST_CASE("filter: a constant field stays constant, whatever the geometry", "[conetrace][filter]")
@@ -52,4 +54,31 @@ TEST_CASE("filter: light does not cross an edge, a step in depth, or an empty pi
     const Image<Vec3> out = filterIrradiance(in, g);
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 6; ++x) CHECK(out.at(x, y) == Vec3(0));
+}
+
+TEST_CASE("filter: the picture holds the bits of its pixels one by one", "[conetrace][filter]")
+{
+    // Rough ground with steps, holes and normals of three kinds; neither edge is a multiple of the lanes, and the last rows are left alone.
+    constexpr int kWidth = 37, kHeight = 23, kRows = 18;
+    std::minstd_rand random(7);
+    const auto at = [&](float low, float high) { return low + (high - low) * float(random() % 4096) / 4096.0f; };
+    GBuffer g = flatPlane(kWidth, kHeight);
+    Image<Vec3> in(kWidth, kHeight);
+    for (std::size_t i = 0; i < in.texels.size(); ++i) {
+        g.objectId.texels[i] = random() % 8 == 0 ? 0u : 1u;
+        g.position.texels[i].z = at(0.0f, 0.15f) + (random() % 6 == 0 ? 3.0f : 0.0f);
+        const Vec3 normal = glm::normalize(Vec3(at(-0.4f, 0.4f), at(-0.4f, 0.4f), 1.0f));
+        g.normal.texels[i] = normal;
+        g.geometricNormal.texels[i] = random() % 5 == 0 ? normal : Vec3(0, 0, 1);
+        in.texels[i] = Vec3(at(0, 1), at(0, 100), at(0, 1e-3f));
+    }
+    const Image<Vec3> out = filterIrradiance(in, g, kRows);
+    int filtered = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const Vec3 alone = !g.covered(in.index(x, y)) ? Vec3(0) : y < kRows ? filterPixel(in, g, kRows, x, y) : in.at(x, y);
+            REQUIRE(out.at(x, y) == alone);
+            filtered += alone != Vec3(0) && alone != in.at(x, y);
+        }
+    CHECK(filtered > kWidth * kRows / 2);
 }

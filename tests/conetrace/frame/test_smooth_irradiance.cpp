@@ -2,6 +2,8 @@
 
 #include "catch.h"
 
+#include <random>
+
 using namespace lrsm;
 
 namespace {
@@ -86,6 +88,23 @@ TEST_CASE("smoothing: light does not cross a thin wall seen from its edge", "[co
         for (int x = 0; x < 96; ++x) REQUIRE(out.at(x, y).x == Approx(x > 48 ? 1.0 : 0.0).margin(1e-6));
 }
 
+TEST_CASE("smoothing: light does not cross a step that is low beside the distance of its taps", "[conetrace][smooth]")
+{
+    GBuffer g = corner(96, 48, 96);
+    Image<Vec3> in(96, 48);
+    const bool alongX = GENERATE(false, true);
+    const auto isUp = [&](int x, int y) { return alongX ? x > 48 : y > 24; };
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            if (!isUp(x, y)) continue;
+            g.position.at(x, y).z = 0.3f;  // four pixels away less than a tenth of the distance
+            in.at(x, y) = Vec3(1);
+        }
+    const Image<Vec3> out = smoothIrradiance(in, g, 2);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) REQUIRE(out.at(x, y).x == (isUp(x, y) ? 1.0f : 0.0f));
+}
+
 TEST_CASE("smoothing: a gradient stays as it is up to the corner", "[conetrace][smooth]")
 {
     const GBuffer g = corner(96, 48, 64);
@@ -129,4 +148,35 @@ TEST_CASE("smoothing: nearness falls with the distance of a wall, and an open fl
     const Image<float> larger = nearnessOf(g);
     for (std::size_t i = 0; i < larger.texels.size(); ++i) REQUIRE(larger.texels[i] == Approx(nearness.texels[i] / 4).margin(1e-7));
     for (const float v : nearnessOf(corner(32, 32, 32)).texels) REQUIRE(v == 0.0f);
+}
+
+TEST_CASE("smoothing: nearness is that of each pixel alone", "[conetrace][smooth]")
+{
+    // Scattered points and holes, wider than the farthest step; the width is no multiple of the lanes.
+    GBuffer g = corner(541, 270, 200);
+    std::minstd_rand random(3);
+    for (std::size_t i = 0; i < g.position.texels.size(); ++i) {
+        if (random() % 4 == 0) g.objectId.texels[i] = 0;
+        g.position.texels[i].z += float(random() % 1024) / 512.0f;
+    }
+    const Image<float> nearness = nearnessOf(g);
+    for (int y = 0; y < g.height; y += 7)
+        for (int x = 0; x < g.width; ++x) {
+            const std::size_t centre = nearness.index(x, y);
+            float mean = 0.0f;
+            for (int d = 0; d < 9 && g.covered(centre); ++d) {
+                const int order[9] = {5, 8, 7, 6, 3, 0, 1, 2, 4}, dx = order[d] % 3 - 1, dy = order[d] / 3 - 1;
+                float sum = 0.0f, horizon = 0.1f;
+                for (int step = 2; step <= 256 && (dx != 0 || dy != 0); step *= 2) {
+                    const int nx = x + dx * step, ny = y + dy * step;
+                    if (nx < 0 || ny < 0 || nx >= g.width || ny >= g.height || g.objectId.at(nx, ny) == 0) continue;
+                    const Vec3 between = g.position.at(nx, ny) - g.position.at(x, y);
+                    const float distance = glm::length(between), sine = glm::dot(between, g.geometricNormal.at(x, y)) / distance;
+                    if (sine > horizon) sum += (sine * sine - horizon * horizon) / distance;
+                    horizon = std::max(horizon, sine);
+                }
+                mean += sum;
+            }
+            REQUIRE(nearness.texels[centre] == mean / 8.0f);
+        }
 }
