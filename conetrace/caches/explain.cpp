@@ -35,6 +35,16 @@ std::string cacheText(const CacheWorld& world, std::uint32_t cache, float weight
                      double(diffuse.x), double(diffuse.y), double(diffuse.z), double(diffuse.w));
 }
 
+const char* fillText(CacheFill fill)
+{
+    switch (fill) {
+    case CacheFill::vct: return "the voxels' radiance, one a direction of travel (rc_fill=vct)";
+    case CacheFill::voxels: return "lit voxels (rc_fill=voxels)";
+    case CacheFill::lrsm: break;
+    }
+    return "the layered light maps (rc_fill=lrsm)";
+}
+
 }  // namespace
 
 std::string explainCaches(const GatherInput& input, int x, int y)
@@ -54,7 +64,8 @@ std::string explainCaches(const GatherInput& input, int x, int y)
 
     std::string text = receiverText(gbuffer, receiverAt(gbuffer, input.opacity.base.grid, input.settings.cones, x, y), x, y);
     text += clusterText(caches.clusters, caches.clusters.clusterOf.texels[pixel] - 1, gbuffer, pixel);
-    text += formatted("\ncaches within %g tiles; place in the %d x %d irradiance table\n", double(input.settings.caches.radius), kDiffuseNodes, kDiffuseNodes);
+    text += formatted("\ncaches within %g tiles, filled from %s; place in the %d x %d irradiance table\n", double(input.settings.caches.radius),
+                      fillText(input.settings.caches.fill), kDiffuseNodes, kDiffuseNodes);
     text += "   cache  at pixel   n.axis   w world  w screen  weight   place        irradiance, opacity\n";
     forCachesOf(world, x, y, [&](std::uint32_t cache, float weight) { text += cacheText(world, cache, weight, x, y, pixel); });
 

@@ -247,6 +247,7 @@ TEST_CASE("method caches: holds what it predicts, and explains the pixel that it
     const Vec3 e = frame.irradiance.at(20, 30);
     std::snprintf(expected, sizeof expected, "irradiance %.6g %.6g %.6g", double(e.x), double(e.y), double(e.z));
     CHECK(text.find(expected) != std::string::npos);
+    CHECK(text.find("filled from the layered light maps") != std::string::npos);
     CHECK(text.find("w world") != std::string::npos);
     CHECK(text.find("tile 1,1") != std::string::npos);
     CHECK(text.find("specular: towards") != std::string::npos);
