@@ -1,6 +1,6 @@
 #include "conetrace/frame/irradiance_filter.h"
 
-#include "conetrace/frame/four_lanes.h"
+#include "conetrace/frame/four_lanes.inc"
 #include "conetrace/frame/lobe.h"
 #include "conetrace/frame/same_surface.h"
 

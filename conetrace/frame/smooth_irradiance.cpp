@@ -1,6 +1,6 @@
 #include "conetrace/frame/smooth_irradiance.h"
 
-#include "conetrace/frame/four_lanes.h"
+#include "conetrace/frame/four_lanes.inc"
 #include "conetrace/frame/same_surface.h"
 
 #include <algorithm>
