@@ -1,6 +1,7 @@
 // The passes of method=proxies and method=ism run anew.
 #include "apps/capture/caches_buffers.h"
 #include "apps/capture/captured_world.h"
+#include "apps/capture/fill.h"
 #include "apps/capture/map_buffers.h"
 #include "apps/capture/picture_buffers.h"
 #include "apps/capture/proxy_buffers.h"
