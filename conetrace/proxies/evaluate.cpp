@@ -77,12 +77,11 @@ struct GatherCounts {
 };
 
 /// What blocks have, by their lists' weights.
-template <class T>
-float blendOf(const std::vector<T>& values, const ListWeights& weights)
+float blendOf(const std::vector<float>& values, const ListWeights& weights)
 {
     float sum = 0.0f;
     for (std::size_t k = 0; k < 4; ++k)
-        if (weights.weight[k] > 0.0f) sum += weights.weight[k] * float(values[weights.block[k]]);
+        if (weights.weight[k] > 0.0f) sum += weights.weight[k] * values[weights.block[k]];
     return sum;
 }
 

@@ -1,5 +1,6 @@
 #include "core/scene/reach.h"
 
+#include "core/base/elementary.h"
 #include "core/scene/coarse_view.h"
 #include "core/scene/cut_polygon.h"
 #include "core/scene/invisible.h"
@@ -14,7 +15,7 @@ namespace {
 
 /// Vertices count within so many reaches: the far ends of what is seen.
 constexpr double kVertexReaches = 2.0;
-constexpr double kNegligibleLight = 1.0 / 256.0;
+constexpr double kNegligibleLight = 1.0 / 256.0;  // of what a place gets
 
 /// What is met from a viewpoint, and the distance from `centre` within which lies kReachShare of it: nearest first, distances from there.
 struct Met {
@@ -73,6 +74,7 @@ void include(Aabb& box, const Scene& scene, const Met& met, double struckReaches
             }
 }
 
+/// Of the brightest channel.
 double most(const Vec3& channels)
 {
     return double(std::max({channels.x, channels.y, channels.z}));
@@ -88,7 +90,7 @@ struct LocalLight {
 LocalLight localLight(const Scene& scene, const Light& light)
 {
     Met met = metFrom(scene, viewpointOf(light), true);
-    const double solidAngle = light.type == LightType::spot ? 2.0 * double(kPi) * (1.0 - std::cos(double(light.outerConeAngle))) : 4.0 * double(kPi) / 6.0;
+    const double solidAngle = light.type == LightType::spot ? 2.0 * double(kPi) * (1.0 - sinCos(double(light.outerConeAngle)).cos) : 4.0 * double(kPi) / 6.0;
     const double flux = met.hits.empty() ? 0.0 : solidAngle * most(light.intensity);
     const Vec3 middle = middleOf(met.hits);
     return {light, std::move(met), middle, flux};
