@@ -94,8 +94,9 @@ Vec3 drawnLight(Tracer& tracer, const Surface& surface, const Scattering& scatte
     return response * chosen.overDensity * radianceFrom(tracer, pool, chosen.index, receiver, direction);
 }
 
-constexpr int kFirstRouletteBounce = 3;    // shorter paths carry most of the light: never end them by chance
-constexpr float kLargestSurvival = 0.95f;  // so that a white furnace ends, too
+constexpr int kFirstRouletteBounce = 3;      // shorter paths carry most of the light: never end them by chance
+constexpr float kRouletteThroughput = 0.5f;  // a path that carries less ends by chance, or goes on carrying this
+constexpr float kLargestSurvival = 0.95f;    // so that a white furnace ends, too
 
 }  // namespace
 
@@ -138,7 +139,7 @@ Vec3 incomingRadiance(Tracer& tracer, const PathStart& start, const PathLight& l
         throughput *= next.value / next.density;
         if (throughput == Vec3(0.0f)) return radiance;
         if (bounce >= kFirstRouletteBounce) {
-            const float survival = std::min(kLargestSurvival, brightest(throughput));
+            const float survival = std::min(kLargestSurvival, brightest(throughput) / kRouletteThroughput);
             if (unitFloat(words[3]) >= survival) return radiance;
             throughput /= survival;
         }
