@@ -1,7 +1,7 @@
 #!/bin/sh
 # The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots (tables.md and report.html in each folder of OUT). An hour on two
 # cores; interrupted, the same command goes on.
-#   scripts/accuracy.sh [OUT]      default out/accuracy
+#   scripts/accuracy.sh [OUT [PART...]]      default out/accuracy, all parts: points settings search seen unseen
 # Scenes: built-ins, and those in $LRSM_SCENES (default ../shared/scenes) where they exist. References are kept in OUT/references, or REFERENCES, and reused.
 set -eu
 cd "$(dirname "$0")/.."
@@ -11,6 +11,8 @@ references=${REFERENCES:-$out/references}
 scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}" 2>/dev/null || echo none)
 views=$scenes/views
 page=${PAGE:-docs/accuracy.md}
+if [ $# -gt 0 ]; then shift; fi
+parts=${*:-points settings search seen unseen}
 
 existing() {
     for view in "$@"; do
@@ -37,16 +39,22 @@ unseen="furnace cornell-glossy $(existing cornell sponza-curtains)
 effects="cornell-glossy atrium $(existing sponza sibenik-nave)"
 sweep() { "$lrsm" sweep "$@" --spp 512 --references "$references"; }
 
-# The points that tune offers, presets among them, and the path tracer.
-sweep $chosen -o "$out/points" --axes points --size 640x360 --repeat 1
-# One setting at a time around balanced.
-sweep $effects -o "$out/settings" --axes one-at-a-time --repeat 1 --path-tracer 0
-# The front, searched from two bases.
-sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 90
-sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 60 --set cone_count=16 --set emitter_delay_taps=2.5 --set emitter_slant_cap=0.25 --set depth_layers=3
-# Scenes that played no part in the choice, and the chosen ones at the same size.
-sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0
-sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0
+# One setting at a time around balanced; the front, searched from two bases; the points that tune offers, on scenes that played no part in the choice and on
+# the chosen ones at the same size; those points, presets among them, and the path tracer.
+measure() {
+    case $1 in
+        points) sweep $chosen -o "$out/points" --axes points --size 640x360 --repeat 1 ;;
+        settings) sweep $effects -o "$out/settings" --axes one-at-a-time --repeat 1 --path-tracer 0 ;;
+        search)
+            sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 90
+            sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 60 --set cone_count=16 --set depth_layers=3
+            ;;
+        seen) sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0 ;;
+        unseen) sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0 ;;
+        *) echo "$0: no part is called $1" >&2 && exit 2 ;;
+    esac
+}
+for part in $parts; do measure "$part"; done
 
 # table FOLDER HEADING NAME [LEFT OUT]: puts the table under HEADING of FOLDER's tables.md between the lines <!-- NAME: begin --> and <!-- NAME: end --> of
 # the page.
@@ -54,6 +62,9 @@ table() {
     sed -n "/^## $2/,/^## /{/^|/p}" "$out/$1/tables.md" | grep -v -e "${4:-^$}" >"$out/$3.md"
     sed -i -e "/<!-- $3: begin -->/,/<!-- $3: end -->/{//!d}" -e "/<!-- $3: begin -->/r $out/$3.md" "$page"
 }
-table points "Presets" presets
-table points "All scenes" points
-table settings "One setting" effects "| loses both |"
+for part in $parts; do
+    case $part in
+        points) table points "Presets" presets && table points "All scenes" points ;;
+        settings) table settings "One setting" effects "| loses both |" ;;
+    esac
+done
