@@ -1,8 +1,13 @@
 // Light through a wall that no light passes: a closed room, lit on one side of a divider. The truth behind it is 0 exactly.
 #include "conetrace/render.h"
 #include "core/scene/shapes.h"
+#include "core/settings/settings_table.h"
 
 #include "catch.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 using namespace lrsm;
 
@@ -43,6 +48,19 @@ double meanIrradiance(const Scene& scene, const Vec3& eye, const Settings& setti
     return sum / double(frame.irradiance.texels.size());
 }
 
+/// The most, over `phases` places of the divider within a voxel, that the dark room gets of the lit one's irradiance.
+double mostDarkOverLit(const Settings& settings, float thicknessVoxels, int phases)
+{
+    const float voxel = 2.0f * kHalfRoom / float(settings.voxel.resolution);
+    double most = 0.0;
+    for (int phase = 0; phase < phases; ++phase) {
+        const Scene scene = dividedRoom(float(phase) / float(phases) * voxel, thicknessVoxels * voxel);
+        const double dark = meanIrradiance(scene, Vec3(1.9f, 1.5f, 1.9f), settings), lit = meanIrradiance(scene, Vec3(-1.9f, 1.5f, 1.9f), settings);
+        most = std::max(most, dark / lit);
+    }
+    return most;
+}
+
 }  // namespace
 
 TEST_CASE("walls: what a lit room gives to the dark one behind a divider", "[conetrace][slab][leak]")
@@ -50,21 +68,39 @@ TEST_CASE("walls: what a lit room gives to the dark one behind a divider", "[con
     Settings settings;
     settings.voxel.resolution = 64;
     settings.rsm.resolution = 128;
-    const float voxel = 2.0f * kHalfRoom / 64.0f;
     // Each limit is 1.15 times what was measured: cones are wide, and a sheet without thickness is met by light that reaches around its foot.
     struct Row {
         float thicknessVoxels;
         double limit;
     };
     for (const Row& row : {Row{0.0f, 0.124}, Row{2.0f, 0.0262}, Row{4.0f, 0.0134}}) {
-        double darkest = 0.0;
-        for (const float phase : {0.0f, 0.375f, 0.75f}) {
-            const Scene scene = dividedRoom(phase * voxel, row.thicknessVoxels * voxel);
-            const double dark = meanIrradiance(scene, Vec3(1.9f, 1.5f, 1.9f), settings), lit = meanIrradiance(scene, Vec3(-1.9f, 1.5f, 1.9f), settings);
-            darkest = std::max(darkest, dark / lit);
+        const double leak = mostDarkOverLit(settings, row.thicknessVoxels, 3);
+        CAPTURE(row.thicknessVoxels, leak);
+        CHECK(leak < row.limit);
+        CHECK(leak > 0.5 * row.limit);  // much better than stated: state it
+    }
+}
+
+// Some minutes; its lines are those of docs/accuracy.md.
+TEST_CASE("walls: the leak over a divider's thickness", "[.long][conetrace][slab][leak]")
+{
+    // Limits, from a thickness of two voxels on, are 1.1 times what was measured.
+    struct Row {
+        const char* preset;
+        int resolution;
+        double limit;
+    };
+    for (const Row& row : {Row{"balanced", 256, 0.0215}, Row{"balanced", 512, 0.033}, Row{"fine", 256, 0.0118}, Row{"fine", 512, 0.0254},
+                           Row{"rays", 256, 0.004}, Row{"rays", 512, 0.0054}}) {
+        Settings settings = preset(row.preset);
+        settings.voxel.resolution = row.resolution;
+        std::ostringstream line;
+        line << std::fixed << std::setprecision(2);
+        for (const float thicknessVoxels : {0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 6.0f}) {
+            const double leak = mostDarkOverLit(settings, thicknessVoxels, 8);
+            line << " " << 100.0 * leak;
+            if (thicknessVoxels >= 2.0f) CHECK(leak < row.limit);
         }
-        CAPTURE(row.thicknessVoxels, darkest);
-        CHECK(darkest < row.limit);
-        CHECK(darkest > 0.5 * row.limit);  // much better than stated: state it
+        WARN(row.preset << ", " << row.resolution << "^3, dark over lit in %, divider of 0, 1, 2, 3, 4, 6 voxels:" << line.str());
     }
 }
