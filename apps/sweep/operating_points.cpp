@@ -28,12 +28,9 @@ constexpr Point kPoints[] = {
     {"proxies", "method=proxies"},
     {"6 rays", "visibility=rays aperture_scale=0.0625"},
     {"9 cones, 512^3", "cone_count=9 depth_layers=3"},
-    {"12 cones, 512^3", "cone_count=12 depth_layers=3"},
     {"fine", "cone_count=16 filter_passes=1 step=0.5"},
     {"rays", "visibility=rays cone_count=16 aperture_scale=0.0625"},
-    {"16 cones, 1024^3", "cone_count=16 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"24 cones, 1024^3", "cone_count=24 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
-    {"accurate", "cone_count=32 filter_passes=1 step=0.5 voxel_resolution=1024 rsm_resolution=2048 depth_layers=3 start_voxels=4"},
+    {"accurate", "visibility=rays cone_count=32 aperture_scale=0.03 filter_passes=1 rsm_resolution=2048"},
 };
 
 }  // namespace
