@@ -56,15 +56,17 @@ measure() {
 }
 for part in $parts; do measure "$part"; done
 
-# table FOLDER HEADING NAME [LEFT OUT]: puts the table under HEADING of FOLDER's tables.md between the lines <!-- NAME: begin --> and <!-- NAME: end --> of
-# the page.
+# table FOLDER HEADING NAME COLUMNS [CONDITION]: puts these columns of the table under HEADING of FOLDER's tables.md, of rows that meet an awk CONDITION (column i
+# is $(i + 1)), between the lines <!-- NAME: begin --> and <!-- NAME: end --> of the page.
 table() {
-    sed -n "/^## $2/,/^## /{/^|/p}" "$out/$1/tables.md" | grep -v -e "${4:-^$}" >"$out/$3.md"
+    sed -n "/^## $2/,/^## /{/^|/p}" "$out/$1/tables.md" |
+        awk -F ' *[|] *' "NR <= 2 || (${5:-1}) { n = split(\"$4\", column, \" \"); row = \"|\"; for (i = 1; i <= n; ++i) row = row \" \" \$(column[i] + 1) \" |\"; print row }" |
+        sed "1{s/over balanced's/time over \`balanced\`/;s/over the preset's/path tracer's time for this error, over the preset's/}" >"$out/$3.md"
     sed -i -e "/<!-- $3: begin -->/,/<!-- $3: end -->/{//!d}" -e "/<!-- $3: begin -->/r $out/$3.md" "$page"
 }
 for part in $parts; do
     case $part in
-        points) table points "Presets" presets && table points "All scenes" points ;;
-        settings) table settings "One setting" effects "| loses both |" ;;
+        points) table points "Presets" presets "1 2 3 4 6 8 9 13" && table points "All scenes" points "1 2 3 4 5 6" ;;
+        settings) table settings "One setting" effects "1 2 3 5 6 7 9" '$4 !~ /loses both/ && ($6 >= 0.5 || $6 <= -0.5)' ;;
     esac
 done
