@@ -1,6 +1,7 @@
 #pragma once
 
 #include "voxel/cascades.h"
+#include "voxel/lookup_cells.h"
 #include "voxel/opacity_pyramid.h"
 
 #include <array>
@@ -37,11 +38,12 @@ class ByteView {
     std::array<std::uint8_t, kLeast + 4> short_{};
 };
 
-/// A pyramid as the wide lookups read it (voxel/sample_opacity_lanes.inc): made once a frame, a few words.
+/// A pyramid as the wide lookups read it (voxel/sample_opacity_lanes.inc): made once a frame.
 struct OpacityView {
     const OpacityPyramid& pyramid;
     FilterFraction fraction;
-    ByteView unorm8, emptyLevels;
+    ByteView unorm8;
+    LookupCells cells;
     const std::int32_t* bits;  ///< two words a brick, the lower half of z first
     int resolution, brickEdge, topLevel;
     VoxelBox outermost;                          ///< of all cascades
@@ -51,7 +53,7 @@ struct OpacityView {
         : pyramid(source),
           fraction(filterFraction),
           unorm8(source.unorm8),
-          emptyLevels(source.emptyLevels),
+          cells(source),
           bits(reinterpret_cast<const std::int32_t*>(source.base.bricks.data())),
           resolution(source.base.grid.resolution),
           brickEdge(BitGrid::bricksPerEdge(resolution)),

@@ -61,11 +61,11 @@ std::vector<std::string> oneAKind(const std::vector<std::string>& notes)
 }
 
 /// Size of the small things in view: at least kSmallShare of what the camera meets is a mesh no larger.
-std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
+std::optional<double> nearFeature(const Scene& scene, const std::vector<CoarseHit>& inView)
 {
     constexpr double kSmallShare = 0.05;
     std::vector<double> sizes(scene.meshes.size(), -1.0), met;
-    for (const CoarseHit& hit : coarseView(scene, viewpointOf(camera)).hits) {
+    for (const CoarseHit& hit : inView) {
         double& size = sizes[hit.mesh];
         if (size < 0.0) {
             Aabb box;
@@ -81,18 +81,18 @@ std::optional<double> nearFeature(const Scene& scene, const Camera& camera)
 }
 
 /// Faces of two materials in one plane, seen by a few rays at least.
-void addContested(const Scene& scene, const Camera& camera, std::vector<std::string>& lines)
+void addContested(const Scene& scene, const std::vector<CoarseHit>& inView, std::vector<std::string>& lines)
 {
     constexpr std::size_t kFew = 3;
     std::vector<CoarseHit> contested;
-    for (const CoarseHit& hit : coarseView(scene, viewpointOf(camera)).hits)
+    for (const CoarseHit& hit : inView)
         if (hit.contender) contested.push_back(hit);
     if (contested.size() < kFew) return;
     lines.push_back("meshes " + quoted(scene.meshes[contested[0].mesh].name) + " and " + quoted(scene.meshes[*contested[0].contender].name) +
                     " lie in one plane in view: rounding decides which shows, and picture and reference may differ; move one of them by a millimetre or so");
 }
 
-void addExtent(const Scene& scene, const Camera& camera, const Settings& settings, std::vector<std::string>& lines)
+void addExtent(const Scene& scene, const Camera& camera, const std::vector<CoarseHit>& inView, const Settings& settings, std::vector<std::string>& lines)
 {
     if (reachIsPart(scene) && settings.voxel.extent == Extent::reach)
         lines.push_back("voxel grid and light maps cover " + metres(double(scene.reach.longestSide())) + " about camera and lights, of a scene of " +
@@ -101,7 +101,7 @@ void addExtent(const Scene& scene, const Camera& camera, const Settings& setting
                         "nothing occludes or reflects indirect light (--bounds scene covers all of it)");
     constexpr double kVoxelsAcross = 2.0;
     const double voxel = double(gridsOf(scene, settings.voxel, camera.position).front().voxelSize);
-    if (const std::optional<double> feature = nearFeature(scene, camera); feature && kVoxelsAcross * voxel > *feature)
+    if (const std::optional<double> feature = nearFeature(scene, inView); feature && kVoxelsAcross * voxel > *feature)
         lines.push_back("a voxel is " + metres(voxel) + " wide, things in view are as small as " + metres(*feature) +
                         ": indirect light cannot tell them apart; raise voxel_resolution or voxel_cascades, or cover less with --bounds");
 }
@@ -191,10 +191,11 @@ std::vector<std::string> loadMessages(const Scene& scene, bool all)
 
 std::vector<std::string> extentMessages(const Scene& scene, const Camera& camera, const Settings& settings)
 {
+    const std::vector<CoarseHit> inView = coarseView(scene, viewpointOf(camera)).hits;
     std::vector<std::string> lines;
-    addExtent(scene, camera, settings, lines);
+    addExtent(scene, camera, inView, settings, lines);
     addDepthSteps(scene, settings, lines);
-    addContested(scene, camera, lines);
+    addContested(scene, inView, lines);
     return lines;
 }
 

@@ -57,9 +57,10 @@ struct MarchBatchScratch {
     float* depthAt(int edge, int axis) { return opticalDepth.data() + std::size_t(rowOfEdge[std::size_t(edge)] * channels + axis) * kBatchCones; }
     alignas(64) float exit[kBatchRoom];
     alignas(64) std::int32_t octant[kBatchRoom], alive[kBatchRoom], occupied[kBatchRoom], wasOccupied[kBatchRoom];
-    // Cones whose tap may meet a voxel: their sample's place, in voxels.
-    alignas(64) std::int32_t lookup[kBatchRoom];
+    // Cones whose tap may meet a voxel; their sample's place, in voxels, and what it holds along each axis: packed.
+    alignas(64) std::int32_t mayHold[kBatchRoom];
     alignas(64) float lookupVoxels[3][kBatchRoom];
+    alignas(64) float density[3][kBatchRoom];
     CascadeTaps cascadeTaps;
     // Cones that may meet an emitter: their sample's place, in the world.
     alignas(64) std::int32_t request[kBatchRoom];
