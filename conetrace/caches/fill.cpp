@@ -1,15 +1,19 @@
 #include "conetrace/caches/fill.h"
 
 #include "conetrace/lrsm/march_slab_batch.h"
+#include "conetrace/vct/march_radiance_batch.h"
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"
 
+#include <algorithm>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace lrsm {
 namespace {
 
-constexpr std::size_t kBatchesPerTask = 8, kFilledPerTask = 4;
+constexpr std::size_t kBatchesPerTask = 8;
 
 struct FillCounts {
     ConeCounts cones;
@@ -26,69 +30,83 @@ CacheAtlas emptyAtlas(const CachePlaces& places, const CacheTables& tables, floa
     return atlas;
 }
 
-void addCounts(CacheAtlas& atlas, const std::vector<FillCounts>& partial)
+/// Cones are numbered cache by cache, texel by texel; a batch is the next kBatchCones of them.
+template <class March>
+class CacheBatch {
+  public:
+    /// march(cones, result, counts)
+    CacheBatch(const CachePlaces& places, const CacheTables& tables, const VoxelGrid& grid, const MarchSettings& settings, March march)
+        : places_(places), tables_(tables), grid_(grid), settings_(settings), march_(std::move(march)), texels_(tables.texels())
+    {
+    }
+
+    void march(std::size_t first, std::size_t end, ConeCounts& counts)
+    {
+        cones_->count = static_cast<int>(end - first);
+        for (std::size_t i = first; i < end; ++i) place(static_cast<int>(i - first), i / texels_, i % texels_);
+        march_(*cones_, *result_, counts);
+    }
+    Vec4 texel(std::size_t cone, float exposure) const
+    {
+        const float* radiance = result_->radiance[cone];
+        return {radiance[0] * exposure, radiance[1] * exposure, radiance[2] * exposure, result_->opacity[cone]};
+    }
+
+  private:
+    void place(int cone, std::size_t cache, std::size_t texel)
+    {
+        const ConeRay ray = texelCone(places_, tables_, grid_, settings_, cache, texel);
+        cones_->setOrigin(cone, ray.originVoxels, ray.originWorld, ray.receiverNormal);
+        cones_->setDirection(cone, ray.direction);
+    }
+
+    const CachePlaces& places_;
+    const CacheTables& tables_;
+    const VoxelGrid& grid_;
+    const MarchSettings& settings_;
+    March march_;
+    std::size_t texels_;
+    std::unique_ptr<ConeBatch> cones_ = std::make_unique_for_overwrite<ConeBatch>();
+    std::unique_ptr<ConeBatchResult> result_ = std::make_unique_for_overwrite<ConeBatchResult>();
+};
+
+/// Fills level 0; what is marched is stored times `exposure`. startTask() returns what marches a task's batches.
+template <class StartTask>
+void fillByBatches(CacheAtlas& atlas, const CachePlaces& places, const CacheTables& tables, const VoxelGrid& grid, const MarchSettings& settings,
+                   float exposure, const CacheSettings& caches, const StartTask& startTask)
 {
+    std::vector<Vec4>& texels = atlas.levels[0];
+    const std::size_t batches = (texels.size() + kBatchCones - 1) / kBatchCones;
+    std::vector<FillCounts> partial(batches / kBatchesPerTask + 1);
+    parallelFor(batches, kBatchesPerTask, [&](std::size_t begin, std::size_t end) {
+        CacheBatch batch(places, tables, grid, settings, startTask());
+        FillCounts& counts = partial[begin / kBatchesPerTask];
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t first = b * kBatchCones, last = std::min(texels.size(), first + kBatchCones);
+            batch.march(first, last, counts.cones);
+            for (std::size_t i = first; i < last; ++i) texels[i] = storedTexel(batch.texel(i - first, exposure), caches, counts.conversions);
+        }
+    });
     for (const FillCounts& counts : partial) {
         atlas.cones += counts.cones;
         atlas.conversions += counts.conversions;
     }
 }
 
-/// A cone at a time: march(ConeRay, counts) is its ConeResult.
-template <class March>
-CacheAtlas fillOneByOne(const CachePlaces& places, const CacheTables& tables, const VoxelGrid& grid, const MarchSettings& settings, float preExposure,
-                        const CacheSettings& caches, const March& march)
+CacheAtlas fillByRadiance(const CachePlaces& places, const CacheTables& tables, const RadianceBatchWorld& world, const ConeSettings& cones,
+                          const CacheSettings& settings, int lanes)
 {
-    CacheAtlas atlas = emptyAtlas(places, tables, preExposure, caches);
-    std::vector<FillCounts> partial(places.size() / kFilledPerTask + 1);
-    parallelFor(places.size(), kFilledPerTask, [&](std::size_t begin, std::size_t end) {
-        FillCounts& counts = partial[begin / kFilledPerTask];
-        for (std::size_t cache = begin; cache < end; ++cache)
-            for (std::size_t texel = 0; texel < tables.texels(); ++texel) {
-                const ConeResult cone = march(texelCone(places, tables, grid, settings, cache, texel), counts.cones);
-                atlas.levels[0][cache * tables.texels() + texel] = storedTexel(Vec4(cone.radiance * preExposure, cone.opacity), caches, counts.conversions);
-            }
+    const RadianceMarch& march = world.march;
+    const MarchSchedule schedule = texelSchedule(settings, cones, march.grid.resolution);
+    const RadianceMarchBatch kernel = marchRadianceBatch(lanes);
+    CacheAtlas atlas = emptyAtlas(places, tables, march.preExposure, settings);
+    fillByBatches(atlas, places, tables, march.grid, march.settings, march.preExposure, settings, [&] {
+        return [&, scratch = std::make_unique_for_overwrite<RadianceBatchScratch>()](const ConeBatch& batch, ConeBatchResult& result, ConeCounts& counts) {
+            kernel(world, schedule, batch, *scratch, result, counts);
+        };
     });
-    addCounts(atlas, partial);
     return atlas;
 }
-
-/// Cones are numbered cache by cache, texel by texel; a batch is the next kBatchCones of them.
-class CacheBatch {
-  public:
-    CacheBatch(const CachePlaces& places, const CacheTables& tables, const BatchWorld& world)
-        : places_(places), tables_(tables), world_(world), texels_(tables.texels())
-    {
-    }
-
-    void march(MarchBatch kernel, const MarchSchedule& schedule, std::size_t first, std::size_t end, ConeCounts& counts)
-    {
-        cones_->count = static_cast<int>(end - first);
-        for (std::size_t i = first; i < end; ++i) place(static_cast<int>(i - first), i / texels_, i % texels_);
-        kernel(world_, schedule, *cones_, *scratch_, *result_, counts);
-    }
-    Vec4 texel(std::size_t cone) const
-    {
-        const float* radiance = result_->radiance[cone];
-        return {radiance[0], radiance[1], radiance[2], result_->opacity[cone]};
-    }
-
-  private:
-    void place(int cone, std::size_t cache, std::size_t texel)
-    {
-        const ConeRay ray = texelCone(places_, tables_, world_.cones.opacity.base.grid, world_.cones.settings.march, cache, texel);
-        cones_->setOrigin(cone, ray.originVoxels, ray.originWorld);
-        cones_->setDirection(cone, ray.direction);
-    }
-
-    const CachePlaces& places_;
-    const CacheTables& tables_;
-    const BatchWorld& world_;
-    std::size_t texels_;
-    std::unique_ptr<ConeBatch> cones_ = std::make_unique_for_overwrite<ConeBatch>();
-    std::unique_ptr<MarchBatchScratch> scratch_ = std::make_unique_for_overwrite<MarchBatchScratch>();
-    std::unique_ptr<ConeBatchResult> result_ = std::make_unique_for_overwrite<ConeBatchResult>();
-};
 
 }  // namespace
 
@@ -158,40 +176,24 @@ CacheAtlas fillFromLrsm(const CachePlaces& places, const CacheTables& tables, co
     const BatchWorld batchWorld(world);
     const MarchBatch kernel = marchSlabBatch(lanes);
     CacheAtlas atlas = emptyAtlas(places, tables, 1.0f / unexposed(world.lrsms), settings);
-    std::vector<Vec4>& texels = atlas.levels[0];
-    const std::size_t batches = (texels.size() + kBatchCones - 1) / kBatchCones;
-    std::vector<FillCounts> partial(batches / kBatchesPerTask + 1);
-    parallelFor(batches, kBatchesPerTask, [&](std::size_t begin, std::size_t end) {
-        CacheBatch batch(places, tables, batchWorld);
-        FillCounts& counts = partial[begin / kBatchesPerTask];
-        for (std::size_t b = begin; b < end; ++b) {
-            const std::size_t first = b * kBatchCones, last = std::min(texels.size(), first + kBatchCones);
-            batch.march(kernel, schedule, first, last, counts.cones);
-            for (std::size_t i = first; i < last; ++i) texels[i] = storedTexel(batch.texel(i - first), settings, counts.conversions);
-        }
+    constexpr float kAsMarched = 1.0f;
+    fillByBatches(atlas, places, tables, world.opacity.base.grid, world.settings.march, kAsMarched, settings, [&] {
+        return [&, scratch = std::make_unique_for_overwrite<MarchBatchScratch>()](const ConeBatch& batch, ConeBatchResult& result, ConeCounts& counts) {
+            kernel(batchWorld, schedule, batch, *scratch, result, counts);
+        };
     });
-    addCounts(atlas, partial);
     return atlas;
 }
 
-CacheAtlas fillFromVct(const CachePlaces& places, const CacheTables& tables, const VctWorld& world, const CacheSettings& settings)
+CacheAtlas fillFromVct(const CachePlaces& places, const CacheTables& tables, const VctWorld& world, const CacheSettings& settings, int lanes)
 {
-    const MarchSchedule schedule = texelSchedule(settings, world.cones, world.grid.resolution);
-    return fillOneByOne(places, tables, world.grid, world.cones.march, world.volume.preExposure, settings, [&](const ConeRay& ray, ConeCounts& counts) {
-        NoRecorder nobody;
-        return marchRadiance(world, ray, schedule, counts, nobody);
-    });
+    return fillByRadiance(places, tables, RadianceBatchWorld(world), world.cones, settings, lanes);
 }
 
-CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, const VoxelWorld& world, const CacheSettings& settings)
+CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, const VoxelWorld& world, const CacheSettings& settings, int lanes)
 {
-    const MarchSchedule schedule = texelSchedule(settings, world.cones, world.grid.resolution);
     const RadianceMarch march{.grid = world.grid, .settings = world.cones.march, .opacity = world.opacity, .preExposure = world.volume.preExposure};
-    const IsotropicLookup lookUp(world.volume, world.cones.march.filterFraction);
-    return fillOneByOne(places, tables, world.grid, world.cones.march, world.volume.preExposure, settings, [&](const ConeRay& ray, ConeCounts& counts) {
-        NoRecorder nobody;
-        return marchRadiance(march, lookUp, ray, schedule, counts, nobody);
-    });
+    return fillByRadiance(places, tables, RadianceBatchWorld(world.volume, march), world.cones, settings, lanes);
 }
 
 }  // namespace lrsm

@@ -27,15 +27,15 @@ GatherPlan planCaches(const CacheSettings& settings, const ConeSettings& cones, 
 /// Level 0 by the LRSM's slab march; `world.settings` must have it (slabSettings). `lanes`: as marchSlabBatch takes it; the bits are the same.
 CacheAtlas fillFromLrsm(const CachePlaces& places, const CacheTables& tables, const ConeWorld& world, const CacheSettings& settings, int lanes = 0);
 
-/// Level 0 by marchRadiance through the volume of method vct, or through lit voxels.
-CacheAtlas fillFromVct(const CachePlaces& places, const CacheTables& tables, const VctWorld& world, const CacheSettings& settings);
+/// Level 0 by marchRadiance through the volume of method vct, or through lit voxels; `lanes` likewise.
+CacheAtlas fillFromVct(const CachePlaces& places, const CacheTables& tables, const VctWorld& world, const CacheSettings& settings, int lanes = 0);
 struct VoxelWorld {
     const IsotropicVolume& volume;
     const VoxelGrid& grid;
     const ConeSettings& cones;
     StepOpacity opacity;
 };
-CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, const VoxelWorld& world, const CacheSettings& settings);
+CacheAtlas fillFromVoxels(const CachePlaces& places, const CacheTables& tables, const VoxelWorld& world, const CacheSettings& settings, int lanes = 0);
 
 /// The settings with estimator=slab.
 ConeSettings slabSettings(const ConeSettings& settings);

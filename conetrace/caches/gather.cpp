@@ -28,7 +28,7 @@ CacheAtlas fillByVct(const GatherInput& input, const CachePlaces& places, const 
     RadianceVolume own;
     const RadianceVolume& volume = radianceOf(input, log, own);
     const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = settings.cones, .vct = settings.vct};
-    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVct(places, tables, world, settings.caches); });
+    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVct(places, tables, world, settings.caches, input.lanes); });
 }
 
 IsotropicVolume lightAndFilter(const GatherInput& input, PassLog& log)
@@ -48,7 +48,7 @@ CacheAtlas fillByVoxels(const GatherInput& input, const CachePlaces& places, con
     const Settings& settings = input.settings;
     const IsotropicVolume volume = lightAndFilter(input, log);
     const VoxelWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = settings.cones, .opacity = settings.vct.opacity};
-    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVoxels(places, tables, world, settings.caches); });
+    return log.run("rc fill", kPixelsPassOn, [&] { return fillFromVoxels(places, tables, world, settings.caches, input.lanes); });
 }
 
 CacheAtlas fill(const GatherInput& input, const CachePlaces& places, const CacheTables& tables, PassLog& log)

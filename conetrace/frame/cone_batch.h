@@ -19,13 +19,15 @@ struct ConeBatch {
     int count = 0;
     alignas(64) float originVoxels[3][kBatchRoom];
     alignas(64) float originWorld[3][kBatchRoom];
-    alignas(64) float direction[3][kBatchRoom];  ///< unit
+    alignas(64) float direction[3][kBatchRoom];       ///< unit
+    alignas(64) float receiverNormal[3][kBatchRoom];  ///< geometric, unit
 
-    void setOrigin(int cone, const Vec3& voxels, const Vec3& world)
+    void setOrigin(int cone, const Vec3& voxels, const Vec3& world, const Vec3& normal)
     {
         for (int axis = 0; axis < 3; ++axis) {
             originVoxels[axis][cone] = voxels[axis];
             originWorld[axis][cone] = world[axis];
+            receiverNormal[axis][cone] = normal[axis];
         }
     }
     void setDirection(int cone, const Vec3& unit)

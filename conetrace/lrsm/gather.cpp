@@ -1,5 +1,6 @@
 #include "conetrace/lrsm/gather.h"
 
+#include "conetrace/frame/tile_batch.h"
 #include "conetrace/frame/tiles.h"
 #include "conetrace/lrsm/explain.h"
 #include "conetrace/lrsm/gather_pixel.h"
@@ -8,7 +9,6 @@
 #include "conetrace/lrsm/memory.h"
 #include "voxel/sample_opacity.h"
 
-#include <algorithm>
 #include <deque>
 #include <memory>
 #include <utility>
@@ -69,135 +69,6 @@ void gatherPaper(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& 
         withOpacitySampler(world.opacity, fraction, [&](const auto& sampler) { gatherWith([&](const ConeWorld&) -> const auto& { return sampler; }); });
 }
 
-/// The pixels of one tile whose cones count in one cascade, as a batch of cones: all of them for one cone of the set, then for the next.
-class TileBatch {
-  public:
-    TileBatch(const GBuffer& gbuffer, const std::deque<BatchWorld>& worlds, std::size_t cascade, const GatherPlan& plan, MarchBatch march)
-        : gbuffer_(gbuffer),
-          finest_(worlds[0].cones.opacity),
-          cascade_(worlds.size() > 1 ? int(cascade) : kOnly),
-          world_(worlds[cascade]),
-          plan_(plan),
-          march_(march)
-    {
-    }
-
-    void gather(const Camera& camera, int tileX, int tileY, const GatherOutput& to, ConeCounts& counts)
-    {
-        place(tileX, tileY);
-        if (pixels_.empty()) return;
-        gatherDiffuse(to, counts);
-        if (!to.gathered.specular.empty()) gatherSpecular(camera, to, counts);
-    }
-
-  private:
-    void place(int tileX, int tileY)
-    {
-        pixels_.clear();
-        receivers_.clear();
-        forPixels(gbuffer_.width, gbuffer_.height, tileX, tileY, [&](int x, int y) {
-            const std::size_t pixel = gbuffer_.position.index(x, y);
-            if (!gbuffer_.covered(pixel)) return;
-            if (cascade_ != kOnly && cascadeOfPixel(gbuffer_, finest_, world_.cones.settings, x, y) != cascade_) return;
-            pixels_.push_back(pixel);
-            receivers_.push_back(receiverAt(gbuffer_, world_.cones.opacity.base.grid, world_.cones.settings, x, y));
-        });
-    }
-
-    void gatherDiffuse(const GatherOutput& to, ConeCounts& counts)
-    {
-        const int count = static_cast<int>(pixels_.size()), sets = world_.cones.settings.set.setsPerPixel;
-        std::vector<Mat3> bases;
-        for (int k = 0; k < count; ++k) {
-            const Receiver& receiver = receivers_[std::size_t(k)];
-            bases.push_back(basisFromNormal(receiver.normal));
-            cones_->setOrigin(k, receiver.originVoxels, receiver.originWorld);
-        }
-        cones_->count = count;
-        std::vector<PixelGather> sums(pixels_.size());
-        int cone = 0;
-        for (int s = 0; s < sets; ++s)
-            for (std::size_t r = 0; r < plan_.cones.rings.size(); ++r) {
-                const ConeRing& ring = plan_.cones.rings[r];
-                for (int c = ring.first; c < ring.first + ring.count; ++c, ++cone) {
-                    for (int k = 0; k < count; ++k) {
-                        const int rotation = (receivers_[std::size_t(k)].rotation + s * kRotations / sets) % kRotations;
-                        cones_->setDirection(k, bases[std::size_t(k)] * plan_.cones.rotation(rotation)[std::size_t(c)]);
-                    }
-                    march_(world_, plan_.ringSchedules[r], *cones_, *scratch_, *result_, counts);
-                    for (int k = 0; k < count; ++k) {
-                        const Vec3 radiance = radianceOf(k);
-                        PixelGather& sum = sums[std::size_t(k)];
-                        sum.irradiance += ring.weight * radiance;
-                        sum.opacity += ring.weight * result_->opacity[k];
-                        if (to.record)
-                            to.record->diffuse[std::size_t(cone) * gbuffer_.position.texels.size() + pixels_[std::size_t(k)]] =
-                                Vec4(radiance, result_->opacity[k]);
-                    }
-                }
-            }
-        const float perSet = 1.0f / static_cast<float>(sets);
-        for (std::size_t k = 0; k < pixels_.size(); ++k) {
-            to.gathered.irradiance.texels[pixels_[k]] = sums[k].irradiance * (kPi * perSet);
-            to.gathered.opacity.texels[pixels_[k]] = sums[k].opacity * perSet;
-        }
-    }
-
-    /// A batch for each class of roughness in the tile: specular cones of one class take the same steps.
-    void gatherSpecular(const Camera& camera, const GatherOutput& to, ConeCounts& counts)
-    {
-        std::vector<std::pair<const MarchSchedule*, std::size_t>> waiting;  // schedule, index into pixels_
-        std::vector<Vec3> directions(pixels_.size());
-        for (std::size_t k = 0; k < pixels_.size(); ++k) {
-            if (gbuffer_.specularColor.texels[pixels_[k]] == Vec3(0.0f)) continue;
-            const Receiver& receiver = receivers_[k];
-            const Vec3 toEye = glm::normalize(directionToEye(camera, receiver.position));
-            const float roughness = gbuffer_.roughness.texels[pixels_[k]];
-            const LobeDirection lobe = plan_.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
-            directions[k] = lobe.direction;
-            if (!to.gathered.lobeWeight.empty()) to.gathered.lobeWeight.texels[pixels_[k]] = lobe.weight;
-            if (!(glm::dot(lobe.direction, receiver.geometricNormal) > 0.0f)) continue;
-            waiting.emplace_back(&plan_.specularSchedule(roughness), k);
-        }
-        std::sort(waiting.begin(), waiting.end());
-        for (std::size_t begin = 0, end = 0; begin < waiting.size(); begin = end) {
-            for (end = begin; end < waiting.size() && waiting[end].first == waiting[begin].first; ++end) {
-                const std::size_t k = waiting[end].second;
-                const int cone = static_cast<int>(end - begin);
-                cones_->setOrigin(cone, receivers_[k].originVoxels, receivers_[k].originWorld);
-                cones_->setDirection(cone, directions[k]);
-            }
-            cones_->count = static_cast<int>(end - begin);
-            march_(world_, *waiting[begin].first, *cones_, *scratch_, *result_, counts);
-            for (std::size_t i = begin; i < end; ++i) {
-                const int cone = static_cast<int>(i - begin);
-                const std::size_t pixel = pixels_[waiting[i].second];
-                to.gathered.specular.texels[pixel] = radianceOf(cone);
-                if (to.record) to.record->specular.texels[pixel] = Vec4(radianceOf(cone), result_->opacity[cone]);
-            }
-        }
-    }
-
-    Vec3 radianceOf(int cone) const
-    {
-        return unexposed(world_.cones.lrsms) * Vec3(result_->radiance[cone][0], result_->radiance[cone][1], result_->radiance[cone][2]);
-    }
-
-    static constexpr int kOnly = -1;
-
-    const GBuffer& gbuffer_;
-    const OpacityPyramid& finest_;
-    const int cascade_;  ///< kOnly: there is one
-    const BatchWorld& world_;
-    const GatherPlan& plan_;
-    const MarchBatch march_;
-    std::vector<std::size_t> pixels_;  ///< covered ones of the tile; any order will do, a stage packs away what it rules out
-    std::vector<Receiver> receivers_;
-    std::unique_ptr<ConeBatch> cones_ = std::make_unique_for_overwrite<ConeBatch>();
-    std::unique_ptr<MarchBatchScratch> scratch_ = std::make_unique_for_overwrite<MarchBatchScratch>();
-    std::unique_ptr<ConeBatchResult> result_ = std::make_unique_for_overwrite<ConeBatchResult>();
-};
-
 /// `slab`: tile by tile at the widest that the machine has.
 void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& world, const GatherPlan& plan, const GatherOutput& out, int lanes)
 {
@@ -209,13 +80,23 @@ void gatherSlab(const GBuffer& gbuffer, const Camera& camera, const ConeWorld& w
         else
             worlds.emplace_back(own, worlds[0].maps);
     }
-    const MarchBatch march = marchSlabBatch(lanes);
-    for (std::size_t cascade = 0; cascade < worlds.size(); ++cascade)
-        out.counts += forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-            return [&, batch = TileBatch(gbuffer, worlds, cascade, plan, march)](int tileX, int tileY, ConeCounts& counts) mutable {
-                batch.gather(camera, tileX, tileY, out, counts);
+    const MarchBatch kernel = marchSlabBatch(lanes);
+    const float unit = unexposed(world.lrsms);
+    for (std::size_t cascade = 0; cascade < worlds.size(); ++cascade) {
+        const BatchWorld& own = worlds[cascade];
+        const TileGather gather{gbuffer, camera, own.cones.opacity.base.grid, own.cones.settings, plan, out.gathered, out.record};
+        const auto mine = [&](int x, int y) {
+            return worlds.size() == 1 || cascadeOfPixel(gbuffer, worlds[0].cones.opacity, own.cones.settings, x, y) == int(cascade);
+        };
+        out.counts += gatherTiles(gather, mine, [&] {
+            return [&, scratch = std::make_unique_for_overwrite<MarchBatchScratch>()](const MarchSchedule& schedule, const ConeBatch& cones,
+                                                                                      ConeBatchResult& result, ConeCounts& counts) {
+                kernel(own, schedule, cones, *scratch, result, counts);
+                for (int k = 0; k < cones.count; ++k)
+                    for (int c = 0; c < 3; ++c) result.radiance[k][c] *= unit;
             };
         });
+    }
 }
 
 struct KeptLrsms {

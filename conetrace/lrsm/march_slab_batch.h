@@ -38,10 +38,7 @@ namespace lanes16 {
 void marchSlabBatch(const BatchWorld&, const MarchSchedule&, const ConeBatch&, MarchBatchScratch&, ConeBatchResult&, ConeCounts&);
 }
 
-/// Widths that this machine runs, narrowest first: 4, and on x86-64 with AVX2 and AVX-512 (F, DQ, BW, VL) also 8 and 16.
-std::vector<int> laneWidths();
-
-/// The kernel of a width; 0, or one that this machine lacks: the widest it has that is not wider.
+/// The kernel of a width, as laneWidth takes it.
 MarchBatch marchSlabBatch(int lanes);
 
 }  // namespace lrsm

@@ -1,44 +1,17 @@
 #include "conetrace/vct/gather.h"
 
-#include "conetrace/frame/pixel_cones.h"
-#include "conetrace/frame/tiles.h"
+#include "conetrace/frame/tile_batch.h"
 #include "conetrace/vct/explain.h"
 #include "conetrace/vct/inject.h"
-#include "conetrace/vct/march.h"
+#include "conetrace/vct/march_radiance_batch.h"
 #include "conetrace/vct/memory.h"
 #include "core/base/hash.h"
 
+#include <memory>
 #include <optional>
 
 namespace lrsm {
 namespace {
-
-struct Silent {};
-
-/// The pixels of one tile.
-void gatherRadianceTile(const GatherInput& input, const VctWorld& world, const GatherPlan& plan, int tileX, int tileY, Gathered& out, ConeRecord* record,
-                        ConeCounts& counts)
-{
-    const GBuffer& gbuffer = input.gbuffer;
-    Silent silent;
-    const auto march = [&](const ConeRay& ray, const MarchSchedule& schedule) { return marchRadiance(world, ray, schedule, counts, silent); };
-    forPixels(gbuffer.width, gbuffer.height, tileX, tileY, [&](int x, int y) {
-        const std::size_t pixel = gbuffer.position.index(x, y);
-        if (!gbuffer.covered(pixel)) return;
-        const Receiver receiver = receiverAt(gbuffer, world.grid, world.cones, x, y);
-        ConeKeeper keeper = diffuseKeeper(record, pixel);
-        const PixelGather diffuse = gatherDiffuse(plan, world.cones.set.setsPerPixel, receiver, march, keeper);
-        out.irradiance.texels[pixel] = diffuse.irradiance;
-        out.opacity.texels[pixel] = diffuse.opacity;
-        if (out.specular.empty() || gbuffer.specularColor.texels[pixel] == Vec3(0.0f)) return;
-        const Vec3 toEye = glm::normalize(directionToEye(input.camera, receiver.position));
-        const float roughness = gbuffer.roughness.texels[pixel];
-        const LobeDirection lobe = plan.lobes.direction(receiver.normal, toEye, roughness, receiver.rotation);
-        keeper = specularKeeper(record, pixel);
-        out.specular.texels[pixel] = gatherSpecular(plan, receiver, lobe.direction, roughness, march, keeper);
-        if (!out.lobeWeight.empty()) out.lobeWeight.texels[pixel] = lobe.weight;
-    });
-}
 
 struct KeptRadiance {
     RadianceVolume volume;
@@ -97,11 +70,16 @@ Gathered traceRadiance(const GatherInput& input, const RadianceVolume& volume, C
     if (record) *record = ConeRecord(gbuffer, input.needs, cones);
     const GatherPlan plan = planVct(cones, input.needs, volume.resolution());
     Gathered out = emptyGathered(gbuffer, input.needs, plan.lobes.sampling());
-    const VctWorld world{.volume = volume, .grid = input.opacity.base.grid, .cones = cones, .vct = input.settings.vct};
-    const ConeCounts counts = forTiles<ConeCounts>(gbuffer.width, gbuffer.height, [&] {
-        return [&](int tileX, int tileY, ConeCounts& tile) { gatherRadianceTile(input, world, plan, tileX, tileY, out, record, tile); };
-    });
-    out.counters = countersOf(counts);
+    const RadianceBatchWorld world(VctWorld{.volume = volume, .grid = input.opacity.base.grid, .cones = cones, .vct = input.settings.vct});
+    const RadianceMarchBatch kernel = marchRadianceBatch(input.lanes);
+    const TileGather gather{gbuffer, input.camera, input.opacity.base.grid, cones, plan, out, record};
+    const auto all = [](int, int) { return true; };
+    out.counters = countersOf(gatherTiles(gather, all, [&] {
+        return [&, scratch = std::make_unique_for_overwrite<RadianceBatchScratch>()](const MarchSchedule& schedule, const ConeBatch& batch,
+                                                                                     ConeBatchResult& result, ConeCounts& counts) {
+            kernel(world, schedule, batch, *scratch, result, counts);
+        };
+    }));
     return out;
 }
 

@@ -24,6 +24,11 @@ struct VctWorld {
     const VctSettings& vct;
 };
 
+inline RadianceMarch marchOf(const VctWorld& world)
+{
+    return {.grid = world.grid, .settings = world.cones.march, .opacity = world.vct.opacity, .preExposure = world.volume.preExposure};
+}
+
 /// What --pixel shows of one step.
 struct VctStep {
     const MarchStep* step = nullptr;
@@ -87,9 +92,8 @@ ConeResult marchRadiance(const RadianceMarch& march, const LookUp& lookUp, const
 template <class Recorder>
 ConeResult marchRadiance(const VctWorld& world, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts, Recorder& recorder)
 {
-    const MarchSettings& settings = world.cones.march;
-    const RadianceMarch march{.grid = world.grid, .settings = settings, .opacity = world.vct.opacity, .preExposure = world.volume.preExposure};
-    return marchRadiance(march, RadianceLookup(world.volume, world.vct, settings.filterFraction, ray.direction), ray, schedule, counts, recorder);
+    const RadianceLookup lookUp(world.volume, world.vct, world.cones.march.filterFraction, ray.direction);
+    return marchRadiance(marchOf(world), lookUp, ray, schedule, counts, recorder);
 }
 
 }  // namespace lrsm

@@ -1,5 +1,5 @@
 // A frame with several voxel grids. The grids and their lookups: tests/voxel/test_cascades.cpp; batches: tests/conetrace/lrsm/test_march_batch.cpp.
-#include "conetrace/lrsm/march_slab_batch.h"
+#include "conetrace/frame/lane_widths.h"
 #include "conetrace/render.h"
 #include "core/base/errors.h"
 #include "core/base/parallel.h"

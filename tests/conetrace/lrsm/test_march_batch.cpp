@@ -6,8 +6,8 @@
 #include "apps/validate/equations/synthetic_maps.h"
 
 #include "catch.h"
+#include "tests/conetrace/cone_batches.h"
 
-#include <cstring>
 #include <memory>
 
 using namespace lrsm;
@@ -88,29 +88,6 @@ OpacityPyramid randomCascades(const BatchCase& c, SearchRandom& random)
     return all.front();
 }
 
-struct Cones {
-    ConeBatch batch;
-    std::vector<ConeRay> rays;
-};
-
-/// From anywhere in and around the grid; axes exactly along x, y or z among them.
-std::unique_ptr<Cones> randomCones(const VoxelGrid& grid, int count, SearchRandom& random)
-{
-    auto cones = std::make_unique<Cones>();
-    cones->batch.count = count;
-    for (int k = 0; k < count; ++k) {
-        const float n = float(grid.resolution);
-        const Vec3 voxels(random.uniform(-0.1f * n, 1.1f * n), random.uniform(0.0f, n), random.uniform(0.0f, n));
-        Vec3 direction = randomUnit(random);
-        if (k % 11 == 3) direction = Vec3(k % 2 ? 1.0f : 0.0f, k % 2 ? 0.0f : -1.0f, 0.0f);
-        const Vec3 world = grid.origin + voxels * grid.voxelSize;
-        cones->rays.push_back({.originWorld = world, .originVoxels = voxels, .direction = direction, .receiverNormal = direction});
-        cones->batch.setOrigin(k, voxels, world);
-        cones->batch.setDirection(k, direction);
-    }
-    return cones;
-}
-
 /// Of the scalar march, cone by cone.
 ConeResult scalar(const ConeWorld& world, const ConeRay& ray, const MarchSchedule& schedule, ConeCounts& counts)
 {
@@ -135,29 +112,14 @@ void holdBatch(const BatchCase& c, std::uint32_t seed)
     const BatchWorld batchWorld(world);
     const MarchSchedule schedule = makeSchedule(c.cones, 0.4f, 1.74f * float(outermostEdge(opacity)));
 
+    const auto scratch = std::make_unique<MarchBatchScratch>();
     for (const int count : {1, 5, 17, 100}) {
-        const auto cones = randomCones(grid, count, random);
-        std::vector<ConeResult> expected;
-        ConeCounts expectedCounts;
-        int litCones = 0;
-        for (const ConeRay& ray : cones->rays) expected.push_back(scalar(world, ray, schedule, expectedCounts));
-        for (const ConeResult& cone : expected) litCones += cone.radiance != Vec3(0.0f);
-        if (count == 100 && c.resolution >= 16 && c.lights > 0) CHECK(litCones > 20);
-        for (const int lanes : laneWidths()) {
-            CAPTURE(count, lanes);
-            const auto scratch = std::make_unique<MarchBatchScratch>();
-            const auto result = std::make_unique<ConeBatchResult>();
-            std::memset(result.get(), 0x7f, sizeof *result);
-            ConeCounts counts;
-            marchSlabBatch(lanes)(batchWorld, schedule, cones->batch, *scratch, *result, counts);
-            for (int k = 0; k < count; ++k) {
-                CAPTURE(k);
-                const ConeResult& e = expected[std::size_t(k)];
-                REQUIRE(std::memcmp(&e.radiance, result->radiance[k], sizeof e.radiance) == 0);
-                REQUIRE(std::memcmp(&e.opacity, &result->opacity[k], sizeof e.opacity) == 0);
-            }
-            REQUIRE(counts == expectedCounts);
-        }
+        const int lit = test::holdBatch(
+            *test::randomCones(grid, count, random), [&](const ConeRay& ray, ConeCounts& counts) { return scalar(world, ray, schedule, counts); },
+            [&](int lanes, const ConeBatch& cones, ConeBatchResult& result, ConeCounts& counts) {
+                marchSlabBatch(lanes)(batchWorld, schedule, cones, *scratch, result, counts);
+            });
+        if (count == 100 && c.resolution >= 16 && c.lights > 0) CHECK(lit > 20);
     }
 }
 
