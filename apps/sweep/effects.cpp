@@ -12,6 +12,7 @@ namespace {
 struct Step {
     const Measurement *row, *base;
     std::string label, around;
+    double baseCost = 0.0;  ///< see costOfBase
 };
 
 std::string baseNameOf(const Measurement& row)
@@ -37,6 +38,21 @@ const Measurement* companionRow(const CaseRows& rows, const Measurement& row, co
     return nullptr;
 }
 
+bool equalBits(const Step& step)
+{
+    return !step.row->irradianceSha256.empty() && step.row->irradianceSha256 == step.base->irradianceSha256;
+}
+
+/// The median of the base's cost and of those of the rows with its bits. A base alone, which is measured first, may have met a busy minute, and every row is
+/// held against it.
+double costOfBase(const std::vector<Step>& steps, const Measurement& base)
+{
+    std::vector<double> costs = {base.cost};
+    for (const Step& step : steps)
+        if (step.base == &base && equalBits(step)) costs.push_back(step.row->cost);
+    return summarize(std::move(costs)).median;
+}
+
 std::vector<Step> stepsOf(const CaseRows& rows)
 {
     const std::vector<std::string> known = presetNames();
@@ -50,12 +66,8 @@ std::vector<Step> stepsOf(const CaseRows& rows)
         else if (const Measurement* base = findSettings(rows, settings); base && base != row)
             steps.push_back({row, base, row->label, name});
     }
+    for (Step& step : steps) step.baseCost = costOfBase(steps, *step.base);
     return steps;
-}
-
-bool equalBits(const Step& step)
-{
-    return !step.row->irradianceSha256.empty() && step.row->irradianceSha256 == step.base->irradianceSha256;
 }
 
 using Group = std::vector<Step>;
@@ -91,10 +103,11 @@ Effect effectOf(const Group& group, double unit, double tolerance)
     std::vector<double> bytes;
     for (const Step& step : group) {
         ratios.push_back(relativeTo(*step.row, *step.base));
+        ratios.back().cost = step.row->cost / step.baseCost;
         if (step.row->bytes > 0 && step.base->bytes > 0) bytes.push_back(static_cast<double>(step.row->bytes) / static_cast<double>(step.base->bytes));
         effect.changed += equalBits(step) ? 0 : 1;
         effect.worstError = ratios.size() == 1 ? ratios.back().error - 1.0 : std::max(effect.worstError, ratios.back().error - 1.0);
-        effect.milliseconds += (step.row->cost - step.base->cost) * unit / static_cast<double>(group.size());
+        effect.milliseconds += (step.row->cost - step.baseCost) * unit / static_cast<double>(group.size());
     }
     const CostError all = combineScenes(ratios);
     effect.error = all.error - 1.0;
@@ -133,7 +146,7 @@ double costNoise(const std::vector<CaseRows>& cases)
     std::vector<double> changes;
     for (const CaseRows& one : cases)
         for (const Step& step : stepsOf(one))
-            if (equalBits(step) && step.base->cost > 0.0) changes.push_back(std::abs(step.row->cost / step.base->cost - 1.0));
+            if (equalBits(step) && step.baseCost > 0.0) changes.push_back(std::abs(step.row->cost / step.baseCost - 1.0));
     return summarize(std::move(changes)).median;
 }
 

@@ -100,17 +100,18 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     CHECK(effect(effects, "density_k=1").kind == EffectKind::changesNothing);
     CHECK(effect(effects, "density_k=1").changed == 0);
 
-    // Costs are 2 and 3 times those of the formula: 1 unit is (10 ms x 2 + 10 ms x 3) / 2.
+    // Costs are 2 and 3 times those of the formula: 1 is 2.5 units of 10 ms.
     const Effect& nine = effect(effects, "cone_count=9");
     CHECK(nine.kind == EffectKind::buys);
     CHECK(nine.cases == 2);
     CHECK(nine.error == Approx(-0.1));
-    CHECK(nine.cost == Approx(0.25));
-    CHECK(nine.milliseconds == Approx(25.0));
-    CHECK(nine.percentPerMs == Approx(10.0 / 25.0));
+    // The base's cost is the median of 4 and 4.04, which have the same bits.
+    CHECK(nine.cost == Approx(5.0 / 4.02 - 1.0));
+    CHECK(nine.milliseconds == Approx(2.5 * 9.8));
+    CHECK(nine.percentPerMs == Approx(10.0 / (2.5 * 9.8)));
     const Effect& coarse = effect(effects, "voxel_resolution=256");
     CHECK(coarse.kind == EffectKind::saves);
-    CHECK(coarse.percentPerMs == Approx(10.0 / 50.0));
+    CHECK(coarse.percentPerMs == Approx(10.0 / (2.5 * 20.2)));
     CHECK(coarse.bytes == Approx(-0.8));
 
     // What counts as no change of time decides between two verdicts.
@@ -120,8 +121,24 @@ TEST_CASE("effects say what each value buys, in order of what a millisecond buys
     CHECK(effect(tolerant, "cone_count=4").kind == EffectKind::losesBoth);
     CHECK(effect(tolerant, "voxel_resolution=256").kind == EffectKind::saves);
 
-    CHECK(costNoise(cases) == Approx(0.01));
+    CHECK(costNoise(cases) == Approx(0.02 / 4.02));
     CHECK(costNoise(casesOf({})) == 0.0);
+}
+
+TEST_CASE("a base that met a busy minute is held to what its bits cost other rows", "[sweep]")
+{
+    std::vector<Measurement> rows = syntheticSweep(1);
+    const std::string bits = rows.front().irradianceSha256;
+    rows.front().cost *= 1.5;
+    for (const char* same : {"ism_bias=0.005", "pp_count=1000"}) {
+        rows.push_back(syntheticAxis(0, same, 0.1, 4.0, 100'000'000));
+        rows.back().irradianceSha256 = bits;
+    }
+    const std::vector<CaseRows> cases = casesOf(rows);
+    const std::vector<Effect> effects = effectsOf(cases, kUnit, 0.02);
+    // Of 12, 8.08, 8 and 8 the median is 8.04.
+    CHECK(effect(effects, "cone_count=9").cost == Approx(10.0 / 8.04 - 1.0));
+    CHECK(effect(effects, "cone_count=9").kind == EffectKind::buys);
 }
 
 TEST_CASE("a value that needs another beside it is held against the row with that other alone", "[sweep]")
