@@ -1,7 +1,7 @@
 #!/bin/sh
 # The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots (tables.md and report.html in each folder of OUT). An hour on two
 # cores; interrupted, the same command goes on.
-#   scripts/accuracy.sh [OUT [PART...]]      default out/accuracy, all parts: points settings search seen unseen
+#   scripts/accuracy.sh [OUT [PART...]]      default out/accuracy, all parts: points settings search seen unseen pictures
 # Scenes: built-ins, and those in $LRSM_SCENES (default ../shared/scenes) where they exist. References are kept in OUT/references, or REFERENCES, and reused.
 set -eu
 cd "$(dirname "$0")/.."
@@ -12,7 +12,7 @@ scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}" 2>/dev/null || echo none)
 views=$scenes/views
 page=${PAGE:-docs/accuracy.md}
 if [ $# -gt 0 ]; then shift; fi
-parts=${*:-points settings search seen unseen}
+parts=${*:-points settings search seen unseen pictures}
 
 existing() {
     for view in "$@"; do
@@ -39,6 +39,17 @@ unseen="furnace cornell-glossy $(existing cornell sponza-curtains)
 effects="cornell-glossy atrium $(existing sponza sibenik-nave)"
 sweep() { "$lrsm" sweep "$@" --spp 512 --references "$references"; }
 
+# Irradiance by balanced, by the path tracer, and their difference, side by side in docs/images; needs oiiotool.
+picture() {
+    name=$(basename "$1" .json)
+    folder=$out/pictures/$name
+    if [ ! -d "$folder/reference" ]; then "$lrsm" reference "$1" --model single --size 640x360 --target-noise 0.02 -o "$folder/reference"; fi
+    "$lrsm" render "$1" --size 640x360 --quiet -o "$folder/balanced"
+    "$lrsm" compare "$folder/balanced" "$folder/reference" --layer irradiance --quiet -o "$folder/compared"
+    oiiotool "$folder/compared/irradiance.test.png" "$folder/compared/irradiance.reference.png" "$folder/compared/irradiance.signed.png" \
+        --mosaic:pad=2 3x1 --resize 1296x0 -o "${IMAGES:-docs/images}/accuracy-$name.png"
+}
+
 # One setting at a time around balanced; the front, searched from two bases; the points that tune offers, on scenes that played no part in the choice and on
 # the chosen ones at the same size; those points, presets among them, and the path tracer.
 measure() {
@@ -51,6 +62,7 @@ measure() {
             ;;
         seen) sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0 ;;
         unseen) sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0 ;;
+        pictures) for scene in cornell-box atrium $(existing sponza sibenik-nave); do picture "$scene"; done ;;
         *) echo "$0: no part is called $1" >&2 && exit 2 ;;
     esac
 }
