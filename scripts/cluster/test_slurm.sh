@@ -72,14 +72,14 @@ echo "test_slurm: $(slurmd -V) is up after $SECONDS s"
 
 # What one machine makes of it.
 picture="--size 320x180 --block 16"
-"$lrsm" reference cornell-box $picture --spp "${SPP:-128}" --threads 2 --quiet -o "$dir/single"
+"$lrsm" reference cornell-box $picture --spp "${SPP:-512}" --threads 2 --quiet -o "$dir/single"
 echo "test_slurm: one machine is done after $SECONDS s"
 
 cat >"$dir/my.yaml" <<END
 lrsm: $lrsm
 threads: 1
 checkpoint_seconds: 1
-reference: {options: "$picture", spp: ${SPP:-128}, samples_per_job: $((${SPP:-128} / 4))}
+reference: {options: "$picture", spp: ${SPP:-512}, samples_per_job: $((${SPP:-512} / 4))}
 END
 cd "$dir"
 snakemake reference -s "$cluster/Snakefile" --profile "$cluster/slurm" --latency-wait 5 --directory "$dir/work" --configfile "$dir/my.yaml" >"$dir/snakemake.log" 2>&1 &
