@@ -1,7 +1,7 @@
 #!/bin/sh
 # The figures of docs/accuracy.md: sweeps against the path tracer, their tables and plots (tables.md and report.html in each folder of OUT). An hour on two
 # cores; interrupted, the same command goes on.
-#   scripts/accuracy.sh [OUT [PART...]]      default out/accuracy, all parts: points settings search seen unseen pictures
+#   scripts/accuracy.sh [OUT [PART...]]      default out/accuracy, all parts: points settings search unseen pictures
 # Scenes: built-ins, and those in $LRSM_SCENES (default ../shared/scenes) where they exist. References are kept in OUT/references, or REFERENCES, and reused.
 set -eu
 cd "$(dirname "$0")/.."
@@ -12,7 +12,7 @@ scenes=$(realpath "${LRSM_SCENES:-../shared/scenes}" 2>/dev/null || echo none)
 views=$scenes/views
 page=${PAGE:-docs/accuracy.md}
 if [ $# -gt 0 ]; then shift; fi
-parts=${*:-points settings search seen unseen pictures}
+parts=${*:-points settings search unseen pictures}
 
 existing() {
     for view in "$@"; do
@@ -50,8 +50,8 @@ picture() {
         --mosaic:pad=2 3x1 --resize 1296x0 -o "${IMAGES:-docs/images}/accuracy-$name.png"
 }
 
-# One setting at a time around balanced; the front, searched from two bases; the points that tune offers, on scenes that played no part in the choice and on
-# the chosen ones at the same size; those points, presets among them, and the path tracer.
+# One setting at a time around balanced; the front, searched from two bases; the points that tune offers, on scenes that played no part in the choice;
+# those points, presets among them, and the path tracer on the chosen ones.
 measure() {
     case $1 in
         points) sweep $chosen -o "$out/points" --axes points --size 640x360 --repeat 1 ;;
@@ -60,7 +60,6 @@ measure() {
             sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 90
             sweep $search -o "$out/search" --axes search --repeat 1 --path-tracer 0 --budget 60 --set cone_count=16 --set depth_layers=3
             ;;
-        seen) sweep $search -o "$out/seen" --axes points --repeat 1 --path-tracer 0 ;;
         unseen) sweep $unseen -o "$out/unseen" --axes points --repeat 1 --path-tracer 0 ;;
         pictures) for scene in cornell-box atrium $(existing sponza sibenik-nave); do picture "$scene"; done ;;
         *) echo "$0: no part is called $1" >&2 && exit 2 ;;
